@@ -1,0 +1,61 @@
+#pragma once
+// A digital elevation model that may have holes, and what a reconstruction of it returns.
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "dem/raster.h"
+
+namespace dem {
+
+/// Where the cells lie. `to_world` maps the CENTRE of cell (col, row) to CRS units:
+///   x = to_world[0] + to_world[1] * col + to_world[2] * row
+///   y = to_world[3] + to_world[4] * col + to_world[5] * row
+struct GeoRef {
+  std::array<double, 6> to_world{0, 1, 0, 0, 0, -1};
+  std::string crs_wkt;  ///< empty: no coordinate system is known, units are taken as metres
+
+  bool operator==(const GeoRef&) const = default;
+};
+
+/// Size of a cell in metres. On a geographic grid dx changes from row to row: one Spacing then
+/// stands for the middle row (dem/geodesy.h gives one for every row).
+struct Spacing {
+  double dx_m = 1;
+  double dy_m = 1;
+
+  bool operator==(const Spacing&) const = default;
+};
+
+/// Heights in metres, a mask and a georeference. Where `known` is 0, `z` means nothing.
+struct Dem {
+  Raster<float> z;
+  Mask known;
+  GeoRef ref;
+  Spacing spacing;
+
+  Size size() const { return z.size(); }
+};
+
+/// One number that a reconstruction reports of itself, e.g. {"iterations", 7, ""}.
+struct Figure {
+  std::string name;
+  double value = 0;
+  std::string unit;
+};
+
+/// What a fill method returns: heights without holes, and what the method can say of them.
+struct Filled {
+  Raster<float> z;
+  Raster<float> sigma;  ///< standard deviation in metres, 0 at known cells; empty when not asked for
+  std::vector<Figure> report;
+};
+
+/// Throws std::invalid_argument unless z and known have the same size, of at least one cell.
+void check_shape(const Dem& dem);
+
+/// As check_shape, and at least one cell must be known.
+void check_fillable(const Dem& dem);
+
+}  // namespace dem

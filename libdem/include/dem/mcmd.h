@@ -1,0 +1,107 @@
+#pragma once
+// Midpoint displacement under constraints: MCMD [belhadj2007], and what it grew from: MDI
+// [belhadj2005] and plain MD. The lattice they share works on any width and height.
+
+#include <cstdint>
+#include <vector>
+
+#include "dem/dem.h"
+#include "dem/fields.h"
+#include "dem/run.h"
+
+namespace dem {
+
+/// How a square is subdivided: whether the midpoint of an edge is the mean of the edge's two ends,
+/// or of its ends and the centres of the squares on both sides.
+enum class Subdivision { triangle_edge, diamond_square };
+
+/// How known elevations rise to their ascendants: in the paper's waves (algorithm 1), or level by
+/// level from the finest, each ascendant once its children are complete.
+enum class UpOrder { waves, levels };
+
+/// What a known cell is, for cells that pull differently on what surrounds them.
+enum class CellKind : std::uint8_t { plain = 0, ridge = 1, river = 2 };
+
+/// Options of fill_mcmd. The names are the paper's symbols.
+/// The defaults are the most accurate for measured terrain; the preset `paper` is
+/// {triangle_edge, waves, weight_exponent = 0}.
+struct McmdOptions {
+  Subdivision subdivision = Subdivision::diamond_square;
+  UpOrder order = UpOrder::levels;
+  double weight_exponent = 3;
+  double I = 0;
+  double I_bu = 0;
+  double I_ridge = 0;
+  double I_bu_ridge = 0;
+  double I_river = 0;
+  double I_bu_river = 0;
+  double datum_m = 0;
+  double H = 0.5;
+  double rt = 0;
+  double rs = 0;
+  std::uint64_t seed = 1;
+};
+std::vector<Field> fields(McmdOptions& options);
+
+/// Fills every unknown cell by the Morphologically Constrained Midpoint Displacement.
+/// Method:   [belhadj2007] algorithm 1 and equations 1 to 3. Departures: lattice of any size; the
+///           default order, weights and subdivision (see McmdOptions); centres take both diagonals.
+/// Needs:    at least one known cell.
+/// Gives:    a raster of the same size, all finite; known cells bit for bit.
+/// Exact on: constants, when I = I_bu = 0 and rs = 0. Not exact on planes.
+/// Cost:     O(cells); 5 bytes a cell beside the input (waves: 9), output included. Any number of
+///           threads gives the same bits.
+/// Throws:   std::invalid_argument, Cancelled.
+/// `kinds`:  empty, or one CellKind a cell: ridge and river cells use their own I and I_bu.
+Raster<float> fill_mcmd(const Dem& dem, const McmdOptions& options = {}, const Run& run = {},
+                        const Raster<CellKind>& kinds = {});
+
+/// The bottom-up half alone (MDBU): the DEM with its ascendants known, ready for fill_md.
+Dem carry_up_mcmd(const Dem& dem, const McmdOptions& options = {}, const Run& run = {},
+                  const Raster<CellKind>& kinds = {});
+
+/// Options of fill_md, plain midpoint displacement.
+struct MdOptions {
+  Subdivision subdivision = Subdivision::diamond_square;
+  double I = 0;
+  double I_ridge = 0;
+  double I_river = 0;
+  double datum_m = 0;
+  double H = 0.5;
+  double rt = 0;
+  double rs = 0;
+  std::uint64_t seed = 1;
+};
+std::vector<Field> fields(MdOptions& options);
+
+/// Fills every unknown cell by midpoint displacement from the corners down, keeping known cells.
+/// Unknown corners start at datum_m: sparse data leave the spikes that MCMD was made to avoid
+/// ([belhadj2007] figures 4 and 5), and a DEM with no known cell at all becomes a fractal.
+/// Method:   [belhadj2007] section 3.1, equations 1 and 2.
+/// Gives, cost, throws: as fill_mcmd, but no cell need be known.
+Raster<float> fill_md(const Dem& dem, const MdOptions& options = {}, const Run& run = {},
+                      const Raster<CellKind>& kinds = {});
+
+/// Options of fill_mdi, the ancestor of MCMD.
+struct MdiOptions {
+  Subdivision subdivision = Subdivision::triangle_edge;
+  double rs_bu = 1;
+  double datum_m = 0;
+  double H = 0.5;
+  double rt = 0;
+  double rs = 0;
+  std::uint64_t seed = 1;
+};
+std::vector<Field> fields(MdiOptions& options);
+
+/// Fills every unknown cell by the Midpoint Displacement's Inverse process, then plain MD.
+/// Method:   [belhadj2005] section 3.3: the queue's waves; an ascendant gets the plain mean of its
+///           children plus (mean distance in cells) * rs_bu * uniform[-1, 1] metres, the paper's
+///           noise (rs_bu = 1).
+/// Gives, cost, throws: as fill_mcmd.
+Raster<float> fill_mdi(const Dem& dem, const MdiOptions& options = {}, const Run& run = {});
+
+/// The bottom-up half of fill_mdi alone.
+Dem carry_up_mdi(const Dem& dem, const MdiOptions& options = {}, const Run& run = {});
+
+}  // namespace dem

@@ -1,0 +1,1 @@
+#include "dem/draw.h"
