@@ -46,10 +46,7 @@ Field::Field(std::string name, std::uint64_t& value, std::string doc)
     : name_(std::move(name)), doc_(std::move(doc)), value_(&value) {}
 
 Field::Field(std::string name, bool& value, std::string doc)
-    : name_(std::move(name)),
-      doc_(std::move(doc)),
-      choices_{"false", "true"},
-      value_(&value) {}
+    : name_(std::move(name)), doc_(std::move(doc)), choices_{"false", "true"}, value_(&value) {}
 
 std::string Field::type() const {
   if (std::holds_alternative<double*>(value_)) return "number";

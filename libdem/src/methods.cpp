@@ -16,6 +16,26 @@ std::vector<FieldInfo> describe(const std::vector<Field>& fields) {
   return infos;
 }
 
+const std::vector<FillMethod>& fill_methods() {
+  static const std::vector<FillMethod> table{
+      make_method<McmdOptions>(
+          "mcmd", "Morphologically Constrained Midpoint Displacement: bottom-up, then top-down",
+          "belhadj2007",
+          {{"paper",
+            "as published: triangle-edge, waves, plain means",
+            {{"subdivision", "triangle_edge"}, {"order", "waves"}, {"weight_exponent", "0"}}}},
+          [](const Dem& d, const McmdOptions& o, const Run& r) { return fill_mcmd(d, o, r); }),
+      make_method<MdiOptions>("mdi",
+                              "Midpoint Displacement's Inverse with its noise, then plain MD",
+                              "belhadj2005", {}, fill_mdi),
+      make_method<MdOptions>(
+          "md", "plain midpoint displacement from the corners down; spikes at sparse data",
+          "belhadj2007", {},
+          [](const Dem& d, const MdOptions& o, const Run& r) { return fill_md(d, o, r); }),
+  };
+  return table;
+}
+
 ChosenMethod find_method(const std::vector<FillMethod>& table, std::string_view name) {
   const auto colon = name.find(':');
   const auto method = std::ranges::find(table, name.substr(0, colon), &FillMethod::name);
@@ -29,9 +49,9 @@ ChosenMethod find_method(const std::vector<FillMethod>& table, std::string_view 
   const auto preset = std::ranges::find(method->presets, name.substr(colon + 1), &Preset::name);
   if (preset == method->presets.end()) {
     for (const auto& p : method->presets) names.push_back(method->name + ":" + p.name);
-    throw std::invalid_argument(fmt::format("unknown preset \"{}\"; {} has {}", name, method->name,
-                                            names.empty() ? "none"
-                                                          : fmt::format("{}", fmt::join(names, ", "))));
+    throw std::invalid_argument(
+        fmt::format("unknown preset \"{}\"; {} has {}", name, method->name,
+                    names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
   }
   return {&*method, preset->settings};
 }

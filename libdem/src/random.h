@@ -31,7 +31,8 @@ constexpr double signed_uniform(std::uint64_t bits) {
 
 /// Uniform integer in [0, bound), bound > 0.
 constexpr std::uint64_t below(std::uint64_t bits, std::uint64_t bound) {
-  return std::uint64_t((static_cast<unsigned __int128>(bits) * bound) >> 64);
+  __extension__ using Wide = unsigned __int128;
+  return std::uint64_t((Wide(bits) * bound) >> 64);
 }
 
 /// A sequence of random numbers for code that draws one after another.

@@ -48,8 +48,9 @@ struct Figure {
 /// What a fill method returns: heights without holes, and what the method can say of them.
 struct Filled {
   Raster<float> z;
-  Raster<float> sigma;  ///< standard deviation in metres, 0 at known cells; empty when not asked for
-  std::vector<Figure> report;
+  Raster<float>
+      sigma{};  ///< standard deviation in metres, 0 at known cells; empty when not asked for
+  std::vector<Figure> report{};
 };
 
 /// Throws std::invalid_argument unless z and known have the same size, of at least one cell.

@@ -13,24 +13,25 @@ namespace dem {
 /// Errors of elevation, got - truth, in metres, over a set of cells.
 struct Errors {
   std::size_t cells = 0;
-  double rmse_m = 0;  ///< root of the mean square
-  double mae_m = 0;   ///< mean of |e|
-  double bias_m = 0;  ///< mean of e
-  double nmad_m = 0;  ///< 1.4826 * median |e - median e|
-  double le90_m = 0;  ///< 90 % of |e| are not larger (nearest rank)
-  double max_m = 0;   ///< largest |e|
+  double rmse_m = 0;          ///< root of the mean square
+  double mae_m = 0;           ///< mean of |e|
+  double bias_m = 0;          ///< mean of e
+  double nmad_m = 0;          ///< 1.4826 * median |e - median e|
+  double le90_m = 0;          ///< 90 % of |e| are not larger (nearest rank)
+  double max_m = 0;           ///< largest |e|
   double slope_rmse_deg = 0;  ///< of Horn's slope, over those cells that have eight neighbours
 };
 
 /// Compares two rasters over the cells where `where` is 1. Sums are in double, pairwise by rows.
-/// `spacing`: one for all rows, or one for each row (dem/geodesy.h). Cells off the rim only for slopes.
-/// Throws:  std::invalid_argument when sizes differ or `where` is empty of cells.
+/// `spacing`: one for all rows, or one for each row (dem/geodesy.h). Cells off the rim only for
+/// slopes. Throws:  std::invalid_argument when sizes differ or `where` is empty of cells.
 Errors compare(const Raster<float>& truth, const Raster<float>& got, const Mask& where,
                std::span<const Spacing> spacing, const Run& run = {});
 
 /// Horn's slope of the surface in degrees, in the size of z; 0 on the outermost ring.
 /// Method: [horn1981], 3 x 3 weights 1 2 1, metric cells.
-Raster<float> slope_deg(const Raster<float>& z, std::span<const Spacing> spacing, const Run& run = {});
+Raster<float> slope_deg(const Raster<float>& z, std::span<const Spacing> spacing,
+                        const Run& run = {});
 
 /// One ring of a radially averaged power spectrum.
 struct SpectrumBin {
@@ -41,8 +42,10 @@ struct SpectrumBin {
 
 /// Radially averaged power spectrum of a surface: plane removed, Hann window, FFT of the largest
 /// part (from the north-west corner) whose sides have no prime factor above 7.
-/// Bins are logarithmic, `per_octave` to a factor of two of the wavelength; empty ones are left out.
-std::vector<SpectrumBin> power_spectrum(const Raster<float>& z, Spacing spacing, int per_octave = 2);
+/// Bins are logarithmic, `per_octave` to a factor of two of the wavelength; empty ones are left
+/// out.
+std::vector<SpectrumBin> power_spectrum(const Raster<float>& z, Spacing spacing,
+                                        int per_octave = 2);
 
 /// The exponent beta of power ~ wavenumber^-beta, by least squares of the logarithms over the bins
 /// between two wavelengths in metres; NaN when fewer than two bins lie there.

@@ -80,4 +80,10 @@ void apply(const Settings& settings, std::vector<Field> fields);
 /// Checks every field.
 void check(const std::vector<Field>& fields);
 
+/// Checks every field of an Options object.
+template <class Options>
+void check_options(Options options) {
+  check(fields(options));
+}
+
 }  // namespace dem

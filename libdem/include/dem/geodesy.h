@@ -10,9 +10,9 @@ namespace dem {
 /// Whether the coordinates are degrees of longitude and latitude.
 bool is_geographic(const GeoRef& ref);
 
-/// Size of a cell in metres, one for each row. Geographic: geodesic lengths on the CRS's ellipsoid at
-/// the row's centre. Projected: the CRS's linear unit. No CRS: units are metres.
-/// Throws std::invalid_argument when the georeference is degenerate (zero or non-finite cell).
+/// Size of a cell in metres, one for each row. Geographic: geodesic lengths on the CRS's ellipsoid
+/// at the row's centre. Projected: the CRS's linear unit. No CRS: units are metres. Throws
+/// std::invalid_argument when the georeference is degenerate (zero or non-finite cell).
 std::vector<Spacing> spacing_by_row(const GeoRef& ref, Size size);
 
 /// The spacing of the middle row.

@@ -24,7 +24,7 @@ enum class CellType { int8, uint8, int16, uint16, int32, uint32, float32, float6
 
 /// One sign that cells hold no elevation, found while reading.
 struct NodataEvidence {
-  std::string what;         ///< "declared value -32768", "mask band", "NaN", "undeclared -9999", ...
+  std::string what;  ///< "declared value -32768", "mask band", "NaN", "undeclared -9999", ...
   std::uint64_t cells = 0;  ///< how many cells show it
   bool used = false;        ///< whether they were taken as unknown
   std::string why;          ///< the reason, in a few words
@@ -54,12 +54,13 @@ struct HeightRange {
 };
 
 struct ReadOptions {
-  int band = 0;                        ///< 1, 2, ...; 0: the only one, else an error names the bands
-  std::optional<double> nodata;        ///< this value means unknown; overrides what is declared
-  bool detect_nodata = true;           ///< look for undeclared sentinels -32768, -9999, 32767
-  std::string tile;                    ///< "N36E008" for an .hgt whose name does not say
+  int band = 0;                  ///< 1, 2, ...; 0: the only one, else an error names the bands
+  std::optional<double> nodata;  ///< this value means unknown; overrides what is declared
+  bool detect_nodata = true;     ///< look for undeclared sentinels -32768, -9999, 32767
+  std::string tile;              ///< "N36E008" for an .hgt whose name does not say
   std::optional<HeightRange> heights;  ///< read as a heightmap image, through OpenImageIO
-  std::optional<double> unknown_grey;  ///< grey of an image that means unknown, 0 (black) to 1 (white)
+  std::optional<double>
+      unknown_grey;  ///< grey of an image that means unknown, 0 (black) to 1 (white)
 };
 
 struct DemFile {
@@ -76,11 +77,11 @@ struct DemFile {
 DemFile read_dem(const std::string& path, const ReadOptions& options = {}, const Run& run = {});
 
 struct WriteOptions {
-  std::string format;                  ///< GDAL driver name, "HGT" or "image"; "": from the extension
-  std::optional<CellType> type;        ///< default: that of the source
-  std::optional<double> nodata;        ///< default: the source's, else one that no elevation has
-  bool compress = true;                ///< GeoTIFF, COG: DEFLATE with predictor, tiled
-  bool overwrite = false;              ///< an existing file is refused otherwise
+  std::string format;            ///< GDAL driver name, "HGT" or "image"; "": from the extension
+  std::optional<CellType> type;  ///< default: that of the source
+  std::optional<double> nodata;  ///< default: the source's, else one that no elevation has
+  bool compress = true;          ///< GeoTIFF, COG: DEFLATE with predictor, tiled
+  bool overwrite = false;        ///< an existing file is refused otherwise
   std::optional<HeightRange> heights;  ///< for images; default: lowest to highest elevation
   std::vector<std::pair<std::string, std::string>> metadata;  ///< added to the source's
 };

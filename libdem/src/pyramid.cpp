@@ -1,0 +1,709 @@
+// The midpoint lattice as a pyramid: the bottom-up pass by levels, and the top-down pass.
+//
+// Level k holds the nodes whose stride is at least 2^k as a small raster of its own, so that every
+// level is the same problem, on a quarter of the cells. In a level, with even-numbered rows and
+// columns (and the last ones, whatever their number) older than the odd ones:
+//
+//     A---e---A     A: older node, also a node of the next level
+//     | \ | / |     e: edge,   one of its coordinates is odd
+//     e---c---e     c: centre, both are odd
+//     | / | \ |
+//     A---e---A     Where a level's last number is odd, the gap before it is empty and shorter.
+//
+// A node's children in one level are its eight neighbours, as far as they are younger, so both
+// passes read rows three at a time and add neighbours with weights: straight loops that vectorise.
+// Level 0 is the DEM itself. It is never copied: what the bottom-up pass computes there (centres
+// from their four edges) is computed again on the way down.
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <vector>
+
+#include "lattice.h"
+#include "midpoint.h"
+#include "parallel.h"
+#include "random.h"
+
+namespace dem {
+
+double bend_factor(double exponent, double part) {
+  if (exponent == 0) return 1;
+  const double fall = 1 - std::pow(1 - part, std::abs(exponent));
+  return exponent > 0 ? 1 - fall : 1 + fall;
+}
+
+double Midpoint::diagonal() const { return std::hypot(double(dem.z.cols()), double(dem.z.rows())); }
+
+namespace {
+
+constexpr std::uint64_t stream_down = 1;
+
+// ---- Levels
+
+/// One axis of one level: n nodes, `stride` cells apart, the last one `gap` after the one before.
+struct LevelAxis {
+  int n = 1;
+  int stride = 1;
+  int gap = 1;
+
+  static LevelAxis finest(int cells) { return {cells, 1, 1}; }
+  LevelAxis coarser() const {
+    if (n <= 2) return *this;
+    const int half = (n - 1) / 2;  // nodes 0, 2, .. 2 * half, and the last when it is odd
+    return (n - 1) % 2 == 0 ? LevelAxis{half + 1, 2 * stride, half == 0 ? gap : stride + gap}
+                            : LevelAxis{half + 2, 2 * stride, gap};
+  }
+
+  int last() const { return n - 1; }
+  int cell(int i) const { return i == last() && n > 1 ? (n - 2) * stride + gap : i * stride; }
+  bool young(int i) const { return i % 2 == 1 && i < last(); }  // born at this level
+  int next(int older) const { return older == last() ? coarser().last() : older / 2; }
+  int from_next(int i, int next_last) const { return i == next_last ? last() : 2 * i; }
+
+  // The distance to the neighbour below or above when it exists and one of the two is young, else
+  // 0.
+  int below(int i) const {
+    if (i < 1 || !(young(i) || young(i - 1))) return 0;
+    return i == last() ? gap : stride;
+  }
+  int above(int i) const {
+    if (i >= last() || !(young(i) || young(i + 1))) return 0;
+    return i + 1 == last() ? gap : stride;
+  }
+};
+
+/// The nodes of one level. A node is known (weight < 0, z its height), or it has been reached by
+/// children (weight > 0, z their weighted sum), or neither (weight = 0, z = 0).
+struct Level {
+  LevelAxis x, y;
+  Raster<float> z, weight;  // empty at level 0, which is the DEM
+};
+
+constexpr float known_weight = -1;
+
+// ---- Weights and kernels
+
+/// Distances in cells to a node's neighbours on its four sides; 0: there is none.
+struct Sides {
+  int l = 0, r = 0, u = 0, d = 0;
+  bool operator==(const Sides&) const = default;
+};
+
+/// Weights of the eight neighbours: left, right, up, down, and the corners between.
+struct Cross {
+  float l = 0, r = 0, u = 0, d = 0, ul = 0, ur = 0, dl = 0, dr = 0;
+};
+
+/// What a node takes from its neighbours.
+struct Rule {
+  Sides sides;
+  Cross plain;                // weights of the neighbours
+  std::array<Cross, 3> bent;  // the same times Delta(e, d) / e, for each CellKind
+  double side_distance = 0, corner_distance = 0;  // means over the neighbours there are
+};
+
+/// The rules of one pass, made when first asked for: a raster has a handful.
+class Rules {
+ public:
+  /// Bottom-up: neighbours weigh distance^-weight_exponent.
+  Rules(const Pull& pull, double diagonal)
+      : bend_(pull.bend), exponent_(pull.weight_exponent), diagonal_(diagonal) {}
+  /// Top-down: plain means over the sides, and over the corners.
+  Rules(const Bend& bend, double diagonal) : bend_(bend), mean_(true), diagonal_(diagonal) {}
+
+  const Rule& of(Sides sides) {
+    for (const Rule& rule : rules_)
+      if (rule.sides == sides) return rule;
+    return rules_.emplace_back(make(sides));
+  }
+
+ private:
+  Rule make(Sides s) const {
+    const auto diagonal = [](int a, int b) { return a && b ? std::hypot(a, b) : 0.0; };
+    const double side[] = {double(s.l), double(s.r), double(s.u), double(s.d)};
+    const double corner[] = {diagonal(s.l, s.u), diagonal(s.r, s.u), diagonal(s.l, s.d),
+                             diagonal(s.r, s.d)};
+    const auto count = [](const double* d) { return 4.0 - double(std::count(d, d + 4, 0.0)); };
+    const auto weight = [&](double d, double n) {
+      return d == 0 ? 0.0 : mean_ ? 1 / n : std::pow(d, -exponent_);
+    };
+    const auto cross = [&](auto factor) {
+      const auto w = [&](const double* d, int i) {
+        return float(weight(d[i], count(d)) * factor(d[i]));
+      };
+      return Cross{w(side, 0),   w(side, 1),   w(side, 2),   w(side, 3),
+                   w(corner, 0), w(corner, 1), w(corner, 2), w(corner, 3)};
+    };
+    const auto mean = [&](const double* d) {
+      return (d[0] + d[1] + d[2] + d[3]) / std::max(count(d), 1.0);
+    };
+    Rule rule{s, cross([](double) { return 1.0; }), {}, mean(side), mean(corner)};
+    for (std::size_t kind = 0; kind < 3; ++kind)
+      rule.bent[kind] = cross([&](double d) { return bend_factor(bend_[kind], d / diagonal_); });
+    return rule;
+  }
+
+  Bend bend_;
+  double exponent_ = 0;
+  bool mean_ = false;
+  double diagonal_;
+  std::vector<Rule> rules_;
+};
+
+/// Three rows of nodes; the outer two may be rows of zeros.
+struct Rows {
+  const float* up;
+  const float* here;
+  const float* down;
+};
+
+/// Which neighbours a sum takes.
+enum class Take { sides, corners, both };
+
+// Sums are paired so that a mirrored raster gives the mirrored sum, bit for bit.
+
+/// out[x] += weighted neighbours, for 1 <= x < n - 2.
+void add_inner(const Rows& z, const Cross& w, Take take, int n, float* out) {
+  const float* __restrict up = z.up;
+  const float* __restrict here = z.here;
+  const float* __restrict down = z.down;
+  float* __restrict sum = out;
+  if (take != Take::corners)
+    for (int x = 1; x < n - 2; ++x)
+      sum[x] += (w.l * here[x - 1] + w.r * here[x + 1]) + (w.u * up[x] + w.d * down[x]);
+  if (take != Take::sides)
+    for (int x = 1; x < n - 2; ++x)
+      sum[x] += (w.ul * up[x - 1] + w.ur * up[x + 1]) + (w.dl * down[x - 1] + w.dr * down[x + 1]);
+}
+
+/// The same for one node anywhere.
+void add_one(const Rows& z, const Cross& w, Take take, int n, int x, float* out) {
+  const auto at = [&](const float* row, int i) { return i >= 0 && i < n ? row[i] : 0; };
+  if (take != Take::corners)
+    out[x] +=
+        (w.l * at(z.here, x - 1) + w.r * at(z.here, x + 1)) + (w.u * z.up[x] + w.d * z.down[x]);
+  if (take != Take::sides)
+    out[x] += (w.ul * at(z.up, x - 1) + w.ur * at(z.up, x + 1)) +
+              (w.dl * at(z.down, x - 1) + w.dr * at(z.down, x + 1));
+}
+
+// ---- One fill
+
+constexpr int no_row = -1;
+
+class Pyramid {
+ public:
+  explicit Pyramid(const Midpoint& fill);
+
+  /// Bottom-up with means.
+  void carry_up(const Pull& pull);
+  /// Bottom-up without: only known cells are known, as in plain MD.
+  void sample();
+
+  Raster<float> displace(const Bend& bend, const Noise& noise, double root_m);
+
+  /// After carry_up: the DEM with the ascendants that became known.
+  Dem known_cells() const;
+
+ private:
+  /// Heights and knowledge (1 or 0) of one row of a level.
+  struct Slot {
+    int y = no_row;
+    std::vector<float> height, known;
+  };
+
+  /// The working space of one thread on one level: four rows that slide over it, and sums.
+  struct Desk {
+    const Level& level;
+    Rules up, down;
+    std::array<Slot, 4> slots;
+    std::vector<float> sum, weight, masked_up, masked_here, masked_down;
+  };
+
+  bool diamond() const { return fill_.subdivision == Subdivision::diamond_square; }
+  bool finest(const Level& level) const { return &level == levels_.data(); }
+  static const Level& coarser(const Level& level) { return *(&level + 1); }
+  Desk desk(const Level& level) const;
+  template <class Work>
+  void in_row_blocks(const Level& level, int rows, const char* what, const Run& run,
+                     Work work) const;
+
+  Slot& loaded(Desk& desk, int y) const;
+  Slot& with_centres(Desk& desk, int y) const;
+  Slot& with_ascendants(Desk& desk, int y) const;
+
+  Sides sides_at(const Level& level, int x, int y, bool ends_only) const;
+  Sides inner_sides(const Level& level, int y, bool ends_only) const;
+  void add_heights(Desk& desk, Rules& rules, int y, const Rows& z, Take take, bool ends_only) const;
+  void add_weights(Desk& desk, int y, const Rows& known, Take take) const;
+
+  void finish_young(Level& level, const Run& run);
+  static void settle(Level& level, int x, int y, float sum, float weight);
+  void coarsen(const Level& level, Level& next, const Run& run);
+  void coarsen_row(Desk& desk, Level& next, int next_y) const;
+
+  float displacement(const Level& level, int x, int y, double distance) const;
+  void sum_ascendants(Desk& desk, int y, const Rows& z, bool centres) const;
+  void refine(Level& level, const Run& run);
+  void refine_row(Desk& desk, Level& level, int y, bool centres) const;
+  void store_row(Desk& desk, int y, Raster<float>& out) const;
+
+  const Midpoint& fill_;
+  std::vector<Level> levels_;
+  std::vector<float> zeros_;
+  Pull pull_;
+  Bend bend_{};
+  Noise noise_;
+  bool carried_up_ = false;
+};
+
+Pyramid::Pyramid(const Midpoint& fill) : fill_(fill), zeros_(std::size_t(fill.dem.z.cols()), 0.f) {
+  Level level{LevelAxis::finest(fill.dem.z.cols()), LevelAxis::finest(fill.dem.z.rows()), {}, {}};
+  levels_.push_back(level);
+  while (level.x.n > 2 || level.y.n > 2) {
+    level = {level.x.coarser(), level.y.coarser(), {}, {}};
+    levels_.push_back(level);
+  }
+  for (std::size_t k = 1; k < levels_.size(); ++k) {
+    const Size size{levels_[k].x.n, levels_[k].y.n};
+    levels_[k].z = Raster<float>(size);
+    levels_[k].weight = Raster<float>(size);
+  }
+}
+
+Pyramid::Desk Pyramid::desk(const Level& level) const {
+  const std::vector<float> row(std::size_t(level.x.n), 0.f);
+  const Slot slot{no_row, row, row};
+  const std::vector<float> masked = fill_.kinds.empty() ? std::vector<float>() : row;
+  return {level,
+          Rules(pull_, fill_.diagonal()),
+          Rules(bend_, fill_.diagonal()),
+          {slot, slot, slot, slot},
+          row,
+          row,
+          masked,
+          masked,
+          masked};
+}
+
+/// Runs work(desk, first, last) over blocks of rows, in parallel, each with a desk of its own.
+template <class Work>
+void Pyramid::in_row_blocks(const Level& level, int rows, const char* what, const Run& run,
+                            Work work) const {
+  constexpr int block = 64, blocks_between_reports = 32;
+  const int blocks = (rows + block - 1) / block;
+  for (int begin = 0; begin < blocks; begin += blocks_between_reports) {
+    run.report(double(begin) / double(blocks), what);
+    parallel_for(begin, std::min(blocks, begin + blocks_between_reports), 1, [&](int b) {
+      Desk own = desk(level);
+      work(own, b * block, std::min(rows, (b + 1) * block));
+    });
+  }
+}
+
+// ---- Rows
+
+/// Row y of the desk's level: heights where known, else 0.
+Pyramid::Slot& Pyramid::loaded(Desk& desk, int y) const {
+  Slot& slot = desk.slots[std::size_t(y % 4)];
+  if (slot.y == y) return slot;
+  slot.y = y;
+  const Level& level = desk.level;
+  const std::size_t n = std::size_t(level.x.n);
+  float* __restrict height = slot.height.data();
+  float* __restrict known = slot.known.data();
+  if (finest(level)) {
+    const float* z = fill_.dem.z.row(y).data();
+    const std::uint8_t* mask = fill_.dem.known.row(y).data();
+    const float reference = fill_.reference_m;
+    for (std::size_t x = 0; x < n; ++x) {
+      known[x] = mask[x] ? 1.0f : 0.0f;
+      height[x] = mask[x] ? z[x] - reference : 0.0f;
+    }
+  } else {
+    const float* z = level.z.row(y).data();
+    const float* weight = level.weight.row(y).data();
+    for (std::size_t x = 0; x < n; ++x) {
+      known[x] = weight[x] < 0 ? 1.0f : 0.0f;
+      height[x] = weight[x] < 0 ? z[x] : 0.0f;
+    }
+  }
+  return slot;
+}
+
+/// Row y, and if it is a young row of level 0, its centres carried up from their four edges.
+/// (Coarser levels have theirs stored by finish_young.)
+Pyramid::Slot& Pyramid::with_centres(Desk& desk, int y) const {
+  if (!carried_up_ || !diamond() || !finest(desk.level) || !desk.level.y.young(y))
+    return loaded(desk, y);
+  Slot& slot = desk.slots[std::size_t(y % 4)];
+  if (slot.y == y) return slot;
+  const Slot& up = loaded(desk, y - 1);
+  const Slot& down = loaded(desk, y + 1);
+  loaded(desk, y);
+  std::ranges::fill(desk.sum, 0.f);
+  std::ranges::fill(desk.weight, 0.f);
+  add_heights(desk, desk.up, y, {up.height.data(), slot.height.data(), down.height.data()},
+              Take::sides, false);
+  add_weights(desk, y, {up.known.data(), slot.known.data(), down.known.data()}, Take::sides);
+  for (int x = 1; x < desk.level.x.last(); x += 2) {
+    const std::size_t i = std::size_t(x);
+    if (slot.known[i] == 0 && desk.weight[i] > 0) {
+      slot.height[i] = desk.sum[i] / desk.weight[i];
+      slot.known[i] = 1;
+    }
+  }
+  return slot;
+}
+
+// ---- Sums over neighbours
+
+/// The neighbours of node (x, y). `ends_only`: of an edge, only its two ends.
+Sides Pyramid::sides_at(const Level& level, int x, int y, bool ends_only) const {
+  Sides s{level.x.below(x), level.x.above(x), level.y.below(y), level.y.above(y)};
+  if (ends_only && !level.x.young(x)) s.l = s.r = 0;
+  if (ends_only && !level.y.young(y)) s.u = s.d = 0;
+  return s;
+}
+
+/// The same for the columns 1 .. n - 3, which are all alike.
+Sides Pyramid::inner_sides(const Level& level, int y, bool ends_only) const {
+  Sides s{level.x.stride, level.x.stride, level.y.below(y), level.y.above(y)};
+  if (ends_only && level.y.young(y)) s.l = s.r = 0;
+  if (ends_only && !level.y.young(y)) s.u = s.d = 0;
+  return s;
+}
+
+/// Calls each(x) for the columns that are not like the inner ones.
+template <class Each>
+void for_outer_columns(int n, Each each) {
+  each(0);
+  for (int x = std::max(1, n - 2); x < n; ++x) each(x);
+}
+
+/// desk.sum += the neighbours' heights in row y, weighted and bent.
+void Pyramid::add_heights(Desk& desk, Rules& rules, int y, const Rows& z, Take take,
+                          bool ends_only) const {
+  const Level& level = desk.level;
+  const int n = level.x.n;
+  const auto add = [&](const Rows& rows, std::size_t kind) {
+    float* sum = desk.sum.data();
+    if (n > 3) add_inner(rows, rules.of(inner_sides(level, y, ends_only)).bent[kind], take, n, sum);
+    for_outer_columns(n, [&](int x) {
+      add_one(rows, rules.of(sides_at(level, x, y, ends_only)).bent[kind], take, n, x, sum);
+    });
+  };
+  if (fill_.kinds.empty()) return add(z, 0);
+
+  // One sum for each kind of neighbour, the others masked out.
+  for (std::size_t kind = 0; kind < 3; ++kind) {
+    const auto masked = [&](const float* row, int at, std::vector<float>& to) {
+      if (row == zeros_.data()) return row;
+      const auto kinds = fill_.kinds.row(level.y.cell(at));
+      for (int x = 0; x < n; ++x)
+        to[std::size_t(x)] =
+            std::size_t(kinds[std::size_t(level.x.cell(x))]) == kind ? row[x] : 0.0f;
+      return static_cast<const float*>(to.data());
+    };
+    add({masked(z.up, y - 1, desk.masked_up), masked(z.here, y, desk.masked_here),
+         masked(z.down, y + 1, desk.masked_down)},
+        kind);
+  }
+}
+
+/// desk.weight += the weights of the known neighbours in row y.
+void Pyramid::add_weights(Desk& desk, int y, const Rows& known, Take take) const {
+  const Level& level = desk.level;
+  const int n = level.x.n;
+  if (n > 3)
+    add_inner(known, desk.up.of(inner_sides(level, y, false)).plain, take, n, desk.weight.data());
+  for_outer_columns(n, [&](int x) {
+    add_one(known, desk.up.of(sides_at(level, x, y, false)).plain, take, n, x, desk.weight.data());
+  });
+}
+
+// ---- Bottom-up
+
+void Pyramid::carry_up(const Pull& pull) {
+  pull_ = pull;
+  carried_up_ = true;
+  for (std::size_t k = 0; k < levels_.size(); ++k) {
+    const Run run = k == 0 ? fill_.run : fill_.run.part(1, 1);
+    if (k > 0) finish_young(levels_[k], run);
+    if (k + 1 < levels_.size()) coarsen(levels_[k], levels_[k + 1], run);
+  }
+  Level& roots = levels_.back();
+  if (!finest(roots))
+    for (int y = 0; y < roots.y.n; ++y)
+      for (int x = 0; x < roots.x.n; ++x) settle(roots, x, y, 0, 0);
+}
+
+void Pyramid::sample() {
+  for (std::size_t k = 0; k + 1 < levels_.size(); ++k)
+    coarsen(levels_[k], levels_[k + 1], fill_.run.part(0, 0));
+}
+
+/// Makes a reached node known: its own sums and those given become its mean.
+void Pyramid::settle(Level& level, int x, int y, float sum, float weight) {
+  float& z = level.z(x, y);
+  float& w = level.weight(x, y);
+  if (w < 0 || w + weight <= 0) return;
+  z = (z + sum) / (w + weight);
+  w = known_weight;
+}
+
+/// The young nodes of a coarser level: edges from what their children gave, then centres from that
+/// and, in diamond-square, from their own four edges.
+void Pyramid::finish_young(Level& level, const Run& run) {
+  in_row_blocks(level, level.y.n, "bottom-up", run, [&](Desk&, int begin, int end) {
+    for (int y = begin; y < end; ++y)
+      for (int x = level.y.young(y) ? 0 : 1; x < level.x.n; ++x)
+        if (level.x.young(x) != level.y.young(y)) settle(level, x, y, 0, 0);
+  });
+  in_row_blocks(level, level.y.n, "bottom-up", run, [&](Desk& desk, int begin, int end) {
+    for (int y = begin | 1; y < end && level.y.young(y); y += 2) {
+      std::ranges::fill(desk.sum, 0.f);
+      std::ranges::fill(desk.weight, 0.f);
+      if (diamond()) {
+        const Slot &up = loaded(desk, y - 1), &here = loaded(desk, y), &down = loaded(desk, y + 1);
+        add_heights(desk, desk.up, y, {up.height.data(), here.height.data(), down.height.data()},
+                    Take::sides, false);
+        add_weights(desk, y, {up.known.data(), here.known.data(), down.known.data()}, Take::sides);
+      }
+      for (int x = 1; x < level.x.last(); x += 2)
+        settle(level, x, y, desk.sum[std::size_t(x)], desk.weight[std::size_t(x)]);
+    }
+  });
+}
+
+/// The old nodes of a level with what their young neighbours give, as the next level.
+void Pyramid::coarsen(const Level& level, Level& next, const Run& run) {
+  in_row_blocks(level, next.y.n, "bottom-up", run, [&](Desk& desk, int begin, int end) {
+    for (int y = begin; y < end; ++y) coarsen_row(desk, next, y);
+  });
+}
+
+void Pyramid::coarsen_row(Desk& desk, Level& next, int next_y) const {
+  const Level& level = desk.level;
+  const int y = level.y.from_next(next_y, next.y.last());
+  std::ranges::fill(desk.sum, 0.f);
+  std::ranges::fill(desk.weight, 0.f);
+  const Slot* here = &loaded(desk, y);
+  if (carried_up_) {
+    const bool has_up = level.y.below(y) > 0, has_down = level.y.above(y) > 0;
+    const Slot* up = has_up ? &with_centres(desk, y - 1) : nullptr;
+    const Slot* down = has_down ? &with_centres(desk, y + 1) : nullptr;
+    loaded(desk, y);
+    const auto row = [&](const Slot* slot, const std::vector<float> Slot::*what) {
+      return slot ? (slot->*what).data() : zeros_.data();
+    };
+    std::ranges::fill(desk.sum, 0.f);
+    std::ranges::fill(desk.weight, 0.f);
+    add_heights(desk, desk.up, y,
+                {row(up, &Slot::height), here->height.data(), row(down, &Slot::height)}, Take::both,
+                false);
+    add_weights(desk, y, {row(up, &Slot::known), here->known.data(), row(down, &Slot::known)},
+                Take::both);
+  }
+  float* z = next.z.row(next_y).data();
+  float* weight = next.weight.row(next_y).data();
+  const float* own_z = finest(level) ? zeros_.data() : level.z.row(y).data();
+  const float* own_weight = finest(level) ? zeros_.data() : level.weight.row(y).data();
+  for (int next_x = 0; next_x < next.x.n; ++next_x) {
+    const std::size_t x = std::size_t(level.x.from_next(next_x, next.x.last()));
+    const bool known = here->known[x] != 0;
+    z[next_x] = known ? here->height[x] : own_z[x] + desk.sum[x];
+    weight[next_x] = known ? known_weight : own_weight[x] + desk.weight[x];
+  }
+}
+
+// ---- Top-down
+
+Raster<float> Pyramid::displace(const Bend& bend, const Noise& noise, double root_m) {
+  bend_ = bend;
+  noise_ = noise;
+  const float root = float(root_m) - fill_.reference_m;
+  Raster<float> out(fill_.dem.size());
+  if (levels_.size() == 1) {  // at most 2 x 2 cells: all roots
+    for (int y = 0; y < out.rows(); ++y)
+      for (int x = 0; x < out.cols(); ++x)
+        out(x, y) = fill_.dem.known(x, y) ? fill_.dem.z(x, y) : float(root_m);
+    return out;
+  }
+  Level& roots = levels_.back();
+  for (std::size_t i = 0; i < roots.z.cells().size(); ++i)
+    if (roots.weight.cells()[i] >= 0) roots.z.cells()[i] = root;
+  for (std::size_t k = levels_.size() - 2; k > 0; --k) refine(levels_[k], fill_.run.part(0, 0));
+
+  const Level& finest_level = levels_.front();
+  const int blocks_of_rows = finest_level.y.n;
+  in_row_blocks(finest_level, blocks_of_rows, "top-down", fill_.run,
+                [&](Desk& desk, int begin, int end) {
+                  for (int y = begin; y < end; ++y) store_row(desk, y, out);
+                });
+  return out;
+}
+
+/// Equation 1 for node (x, y) of a level, times the mean distance of its ascendants.
+float Pyramid::displacement(const Level& level, int x, int y, double distance) const {
+  const int coarsest = int(levels_.size()) - 2, r = coarsest - int(&level - levels_.data());
+  const double scale = noise_.rs * std::exp2(-2 * noise_.H * r);
+  const double su_rand =
+      signed_uniform(random_bits(noise_.seed, stream_down, level.x.cell(x), level.y.cell(y)));
+  return float((su_rand + noise_.rt) * scale * distance);
+}
+
+/// desk.sum = what the ascendants of the edges or centres in row y give them.
+void Pyramid::sum_ascendants(Desk& desk, int y, const Rows& z, bool centres) const {
+  const bool ends_only = !centres && !diamond();
+  std::ranges::fill(desk.sum, 0.f);
+  add_heights(desk, desk.down, y, z, centres ? Take::corners : Take::sides, ends_only);
+  if (noise_.rs == 0) return;
+  const Level& level = desk.level;
+  for (int x = 0; x < level.x.n; ++x) {
+    if (level.x.young(x) != (centres || !level.y.young(y))) continue;
+    const Rule& rule = desk.down.of(sides_at(level, x, y, ends_only));
+    desk.sum[std::size_t(x)] +=
+        displacement(level, x, y, centres ? rule.corner_distance : rule.side_distance);
+  }
+}
+
+/// Completes a coarser level from the next one: old nodes, centres, edges of old and of young rows,
+/// each step reading only what the steps before it wrote.
+void Pyramid::refine(Level& level, const Run& run) {
+  const Level& next = coarser(level);
+  in_row_blocks(level, next.y.n, "top-down", run, [&](Desk&, int begin, int end) {
+    for (int next_y = begin; next_y < end; ++next_y) {
+      const int y = level.y.from_next(next_y, next.y.last());
+      for (int next_x = 0; next_x < next.x.n; ++next_x)
+        level.z(level.x.from_next(next_x, next.x.last()), y) = next.z(next_x, next_y);
+    }
+  });
+  const auto step = [&](bool young_rows, bool centres) {
+    in_row_blocks(level, level.y.n, "top-down", run, [&](Desk& desk, int begin, int end) {
+      for (int y = begin; y < end; ++y)
+        if (level.y.young(y) == young_rows) refine_row(desk, level, y, centres);
+    });
+  };
+  step(true, true);
+  step(false, false);
+  step(true, false);
+}
+
+void Pyramid::refine_row(Desk& desk, Level& level, int y, bool centres) const {
+  const auto row = [&](int at, int distance) {
+    return distance > 0 ? level.z.row(at).data() : zeros_.data();
+  };
+  sum_ascendants(desk, y, {row(y - 1, level.y.below(y)), row(y, 1), row(y + 1, level.y.above(y))},
+                 centres);
+  float* z = level.z.row(y).data();
+  const float* weight = level.weight.row(y).data();
+  const bool young_columns = centres || !level.y.young(y);
+  for (int x = 0; x < level.x.n; ++x)
+    if (level.x.young(x) == young_columns && weight[x] >= 0) z[x] = desk.sum[std::size_t(x)];
+}
+
+/// Row y of level 0 with its old nodes or its centres complete: all that its edges need.
+Pyramid::Slot& Pyramid::with_ascendants(Desk& desk, int y) const {
+  const Level& level = desk.level;
+  Slot& slot = desk.slots[std::size_t(y % 4)];
+  if (slot.y == y) return slot;
+  if (!level.y.young(y)) {
+    loaded(desk, y);
+    const Level& next = coarser(level);
+    const float* z = next.z.row(level.y.next(y)).data();
+    for (int next_x = 0; next_x < next.x.n; ++next_x) {
+      const std::size_t x = std::size_t(level.x.from_next(next_x, next.x.last()));
+      if (slot.known[x] == 0) slot.height[x] = z[next_x];
+    }
+    return slot;
+  }
+  const Slot& up = with_ascendants(desk, y - 1);
+  const Slot& down = with_ascendants(desk, y + 1);
+  with_centres(desk, y);
+  sum_ascendants(desk, y, {up.height.data(), slot.height.data(), down.height.data()}, true);
+  for (int x = 1; x < level.x.last(); x += 2)
+    if (slot.known[std::size_t(x)] == 0) slot.height[std::size_t(x)] = desk.sum[std::size_t(x)];
+  return slot;
+}
+
+/// Row y of the result: known cells as given, older nodes as they are, edges computed.
+void Pyramid::store_row(Desk& desk, int y, Raster<float>& out) const {
+  const Level& level = desk.level;
+  const bool has_up = level.y.below(y) > 0, has_down = level.y.above(y) > 0;
+  const float* up = has_up ? with_ascendants(desk, y - 1).height.data() : zeros_.data();
+  const float* down = has_down ? with_ascendants(desk, y + 1).height.data() : zeros_.data();
+  const float* here = with_ascendants(desk, y).height.data();
+  sum_ascendants(desk, y, {up, here, down}, false);
+
+  const float* z = fill_.dem.z.row(y).data();
+  const std::uint8_t* known = fill_.dem.known.row(y).data();
+  float* to = out.row(y).data();
+  const int edges = level.y.young(y) ? 0 : 1, last = level.x.last();
+  for (int x = 0; x <= last; ++x) {
+    const bool edge = x % 2 == edges;
+    const float height = edge ? desk.sum[std::size_t(x)] : here[x];
+    to[x] = known[x] ? z[x] : height + fill_.reference_m;
+  }
+  const bool last_is_edge = edges == 0;  // the last column is an old one, whatever its number
+  if (!known[last])
+    to[last] = (last_is_edge ? desk.sum[std::size_t(last)] : here[last]) + fill_.reference_m;
+}
+
+// ---- The DEM after the bottom-up pass
+
+Dem Pyramid::known_cells() const {
+  Dem dem = fill_.dem;
+  for (auto& k : dem.known.cells()) k = k != 0;
+  const auto learn = [&](int col, int row, float z) {
+    if (dem.known(col, row)) return;
+    dem.known(col, row) = 1;
+    dem.z(col, row) = z + fill_.reference_m;
+  };
+  const Level& cells = levels_.front();
+  Desk rows = desk(cells);
+  if (levels_.size() > 1)
+    for (int y = 1; y < cells.y.last(); y += 2) {
+      const Slot& slot = with_centres(rows, y);
+      for (int x = 1; x < cells.x.last(); x += 2)
+        if (slot.known[std::size_t(x)] != 0) learn(x, y, slot.height[std::size_t(x)]);
+    }
+  for (std::size_t k = 1; k < levels_.size(); ++k)
+    for (int y = 0; y < levels_[k].y.n; ++y)
+      for (int x = 0; x < levels_[k].x.n; ++x)
+        if (levels_[k].weight(x, y) < 0)
+          learn(levels_[k].x.cell(x), levels_[k].y.cell(y), levels_[k].z(x, y));
+  return dem;
+}
+
+}  // namespace
+
+// ---- The passes
+
+Raster<float> displace(const Midpoint& fill, const Bend& bend, const Noise& noise, double root_m) {
+  return with_threads(fill.run.threads, [&] {
+    Pyramid pyramid(fill);
+    pyramid.sample();
+    return pyramid.displace(bend, noise, root_m);
+  });
+}
+
+Dem carry_up_by_levels(const Midpoint& fill, const Pull& pull) {
+  return with_threads(fill.run.threads, [&] {
+    Pyramid pyramid(fill);
+    pyramid.carry_up(pull);
+    return pyramid.known_cells();
+  });
+}
+
+Raster<float> carry_up_and_displace(const Midpoint& fill, const Pull& pull, const Bend& bend,
+                                    const Noise& noise, double root_m) {
+  return with_threads(fill.run.threads, [&] {
+    Pyramid pyramid(fill);
+    pyramid.carry_up(pull);
+    return pyramid.displace(bend, noise, root_m);
+  });
+}
+
+}  // namespace dem
