@@ -163,29 +163,37 @@ enum class Take { sides, corners, both };
 
 // Sums are paired so that a mirrored raster gives the mirrored sum, bit for bit.
 
-/// out[x] += weighted neighbours, for 1 <= x < n - 2.
-void add_inner(const Rows& z, const Cross& w, Take take, int n, float* out) {
+/// out[x] = (Add: +=) weighted neighbours, for 1 <= x < n - 2.
+template <bool Add>
+void sum_inner(const Rows& z, const Cross& w, Take take, int n, float* out) {
   const float* __restrict up = z.up;
   const float* __restrict here = z.here;
   const float* __restrict down = z.down;
   float* __restrict sum = out;
-  if (take != Take::corners)
-    for (int x = 1; x < n - 2; ++x)
-      sum[x] += (w.l * here[x - 1] + w.r * here[x + 1]) + (w.u * up[x] + w.d * down[x]);
-  if (take != Take::sides)
-    for (int x = 1; x < n - 2; ++x)
-      sum[x] += (w.ul * up[x - 1] + w.ur * up[x + 1]) + (w.dl * down[x - 1] + w.dr * down[x + 1]);
+  const auto side = [&](int x) {
+    return (w.l * here[x - 1] + w.r * here[x + 1]) + (w.u * up[x] + w.d * down[x]);
+  };
+  const auto corner = [&](int x) {
+    return (w.ul * up[x - 1] + w.ur * up[x + 1]) + (w.dl * down[x - 1] + w.dr * down[x + 1]);
+  };
+  const auto each = [&](auto value) {
+    for (int x = 1; x < n - 2; ++x) sum[x] = Add ? sum[x] + value(x) : value(x);
+  };
+  if (take == Take::sides) each(side);
+  if (take == Take::corners) each(corner);
+  if (take == Take::both) each([&](int x) { return side(x) + corner(x); });
 }
 
 /// The same for one node anywhere.
-void add_one(const Rows& z, const Cross& w, Take take, int n, int x, float* out) {
+template <bool Add>
+void sum_one(const Rows& z, const Cross& w, Take take, int n, int x, float* out) {
   const auto at = [&](const float* row, int i) { return i >= 0 && i < n ? row[i] : 0; };
-  if (take != Take::corners)
-    out[x] +=
-        (w.l * at(z.here, x - 1) + w.r * at(z.here, x + 1)) + (w.u * z.up[x] + w.d * z.down[x]);
-  if (take != Take::sides)
-    out[x] += (w.ul * at(z.up, x - 1) + w.ur * at(z.up, x + 1)) +
-              (w.dl * at(z.down, x - 1) + w.dr * at(z.down, x + 1));
+  const float side =
+      (w.l * at(z.here, x - 1) + w.r * at(z.here, x + 1)) + (w.u * z.up[x] + w.d * z.down[x]);
+  const float corner = (w.ul * at(z.up, x - 1) + w.ur * at(z.up, x + 1)) +
+                       (w.dl * at(z.down, x - 1) + w.dr * at(z.down, x + 1));
+  const float value = take == Take::sides ? side : take == Take::corners ? corner : side + corner;
+  out[x] = Add ? out[x] + value : value;
 }
 
 // ---- One fill
@@ -218,6 +226,7 @@ class Pyramid {
     const Level& level;
     Rules up, down;
     std::array<Slot, 4> slots;
+    std::vector<std::int32_t> young;  // all ones in the young columns, else 0
     std::vector<float> sum, weight, masked_up, masked_here, masked_down;
   };
 
@@ -235,8 +244,8 @@ class Pyramid {
 
   Sides sides_at(const Level& level, int x, int y, bool ends_only) const;
   Sides inner_sides(const Level& level, int y, bool ends_only) const;
-  void add_heights(Desk& desk, Rules& rules, int y, const Rows& z, Take take, bool ends_only) const;
-  void add_weights(Desk& desk, int y, const Rows& known, Take take) const;
+  void sum_heights(Desk& desk, Rules& rules, int y, const Rows& z, Take take, bool ends_only) const;
+  void sum_weights(Desk& desk, int y, const Rows& known, Take take) const;
 
   void finish_young(Level& level, const Run& run);
   static void settle(Level& level, int x, int y, float sum, float weight);
@@ -275,11 +284,14 @@ Pyramid::Pyramid(const Midpoint& fill) : fill_(fill), zeros_(std::size_t(fill.de
 Pyramid::Desk Pyramid::desk(const Level& level) const {
   const std::vector<float> row(std::size_t(level.x.n), 0.f);
   const Slot slot{no_row, row, row};
+  std::vector<std::int32_t> young(row.size());
+  for (int x = 1; x < level.x.last(); x += 2) young[std::size_t(x)] = -1;
   const std::vector<float> masked = fill_.kinds.empty() ? std::vector<float>() : row;
   return {level,
           Rules(pull_, fill_.diagonal()),
           Rules(bend_, fill_.diagonal()),
           {slot, slot, slot, slot},
+          std::move(young),
           row,
           row,
           masked,
@@ -314,19 +326,21 @@ Pyramid::Slot& Pyramid::loaded(Desk& desk, int y) const {
   float* __restrict height = slot.height.data();
   float* __restrict known = slot.known.data();
   if (finest(level)) {
-    const float* z = fill_.dem.z.row(y).data();
-    const std::uint8_t* mask = fill_.dem.known.row(y).data();
+    const float* __restrict z = fill_.dem.z.row(y).data();
+    const std::uint8_t* __restrict mask = fill_.dem.known.row(y).data();
     const float reference = fill_.reference_m;
     for (std::size_t x = 0; x < n; ++x) {
-      known[x] = mask[x] ? 1.0f : 0.0f;
-      height[x] = mask[x] ? z[x] - reference : 0.0f;
+      const std::int32_t is_known = -std::int32_t(mask[x] != 0);
+      known[x] = choose(is_known, 1.0f, 0.0f);
+      height[x] = choose(is_known, z[x] - reference, 0.0f);
     }
   } else {
-    const float* z = level.z.row(y).data();
-    const float* weight = level.weight.row(y).data();
+    const float* __restrict z = level.z.row(y).data();
+    const float* __restrict weight = level.weight.row(y).data();
     for (std::size_t x = 0; x < n; ++x) {
-      known[x] = weight[x] < 0 ? 1.0f : 0.0f;
-      height[x] = weight[x] < 0 ? z[x] : 0.0f;
+      const std::int32_t is_known = -std::int32_t(weight[x] < 0);
+      known[x] = choose(is_known, 1.0f, 0.0f);
+      height[x] = choose(is_known, z[x], 0.0f);
     }
   }
   return slot;
@@ -342,17 +356,20 @@ Pyramid::Slot& Pyramid::with_centres(Desk& desk, int y) const {
   const Slot& up = loaded(desk, y - 1);
   const Slot& down = loaded(desk, y + 1);
   loaded(desk, y);
-  std::ranges::fill(desk.sum, 0.f);
-  std::ranges::fill(desk.weight, 0.f);
-  add_heights(desk, desk.up, y, {up.height.data(), slot.height.data(), down.height.data()},
+  sum_heights(desk, desk.up, y, {up.height.data(), slot.height.data(), down.height.data()},
               Take::sides, false);
-  add_weights(desk, y, {up.known.data(), slot.known.data(), down.known.data()}, Take::sides);
-  for (int x = 1; x < desk.level.x.last(); x += 2) {
-    const std::size_t i = std::size_t(x);
-    if (slot.known[i] == 0 && desk.weight[i] > 0) {
-      slot.height[i] = desk.sum[i] / desk.weight[i];
-      slot.known[i] = 1;
-    }
+  sum_weights(desk, y, {up.known.data(), slot.known.data(), down.known.data()}, Take::sides);
+
+  // A centre that is unknown and has known edges.
+  const std::int32_t* __restrict young = desk.young.data();
+  const float* __restrict sum = desk.sum.data();
+  const float* __restrict weight = desk.weight.data();
+  float* __restrict height = slot.height.data();
+  float* __restrict known = slot.known.data();
+  for (int x = 0; x < desk.level.x.n; ++x) {
+    const std::int32_t take = young[x] & -std::int32_t(weight[x] > known[x] * 1e30f);
+    height[x] = choose(take, sum[x] / std::max(weight[x], 1e-30f), height[x]);
+    known[x] = choose(take, 1.0f, known[x]);
   }
   return slot;
 }
@@ -382,44 +399,47 @@ void for_outer_columns(int n, Each each) {
   for (int x = std::max(1, n - 2); x < n; ++x) each(x);
 }
 
-/// desk.sum += the neighbours' heights in row y, weighted and bent.
-void Pyramid::add_heights(Desk& desk, Rules& rules, int y, const Rows& z, Take take,
+/// desk.sum = the neighbours' heights in row y, weighted and bent.
+void Pyramid::sum_heights(Desk& desk, Rules& rules, int y, const Rows& z, Take take,
                           bool ends_only) const {
   const Level& level = desk.level;
   const int n = level.x.n;
-  const auto add = [&](const Rows& rows, std::size_t kind) {
-    float* sum = desk.sum.data();
-    if (n > 3) add_inner(rows, rules.of(inner_sides(level, y, ends_only)).bent[kind], take, n, sum);
+  float* sum = desk.sum.data();
+  const auto of_kind = [&](auto add, const Rows& rows, std::size_t kind) {
+    if (n > 3)
+      sum_inner<add>(rows, rules.of(inner_sides(level, y, ends_only)).bent[kind], take, n, sum);
     for_outer_columns(n, [&](int x) {
-      add_one(rows, rules.of(sides_at(level, x, y, ends_only)).bent[kind], take, n, x, sum);
+      sum_one<add>(rows, rules.of(sides_at(level, x, y, ends_only)).bent[kind], take, n, x, sum);
     });
   };
-  if (fill_.kinds.empty()) return add(z, 0);
+  if (fill_.kinds.empty()) return of_kind(std::false_type(), z, 0);
 
   // One sum for each kind of neighbour, the others masked out.
   for (std::size_t kind = 0; kind < 3; ++kind) {
     const auto masked = [&](const float* row, int at, std::vector<float>& to) {
       if (row == zeros_.data()) return row;
       const auto kinds = fill_.kinds.row(level.y.cell(at));
-      for (int x = 0; x < n; ++x)
-        to[std::size_t(x)] =
-            std::size_t(kinds[std::size_t(level.x.cell(x))]) == kind ? row[x] : 0.0f;
+      for (int x = 0; x < n; ++x) {
+        const bool same = std::size_t(kinds[std::size_t(level.x.cell(x))]) == kind;
+        to[std::size_t(x)] = same ? row[x] : 0.0f;
+      }
       return static_cast<const float*>(to.data());
     };
-    add({masked(z.up, y - 1, desk.masked_up), masked(z.here, y, desk.masked_here),
-         masked(z.down, y + 1, desk.masked_down)},
-        kind);
+    const Rows rows{masked(z.up, y - 1, desk.masked_up), masked(z.here, y, desk.masked_here),
+                    masked(z.down, y + 1, desk.masked_down)};
+    kind == 0 ? of_kind(std::false_type(), rows, kind) : of_kind(std::true_type(), rows, kind);
   }
 }
 
-/// desk.weight += the weights of the known neighbours in row y.
-void Pyramid::add_weights(Desk& desk, int y, const Rows& known, Take take) const {
+/// desk.weight = the weights of the known neighbours in row y.
+void Pyramid::sum_weights(Desk& desk, int y, const Rows& known, Take take) const {
   const Level& level = desk.level;
   const int n = level.x.n;
+  float* weight = desk.weight.data();
   if (n > 3)
-    add_inner(known, desk.up.of(inner_sides(level, y, false)).plain, take, n, desk.weight.data());
+    sum_inner<false>(known, desk.up.of(inner_sides(level, y, false)).plain, take, n, weight);
   for_outer_columns(n, [&](int x) {
-    add_one(known, desk.up.of(sides_at(level, x, y, false)).plain, take, n, x, desk.weight.data());
+    sum_one<false>(known, desk.up.of(sides_at(level, x, y, false)).plain, take, n, x, weight);
   });
 }
 
@@ -463,13 +483,11 @@ void Pyramid::finish_young(Level& level, const Run& run) {
   });
   in_row_blocks(level, level.y.n, "bottom-up", run, [&](Desk& desk, int begin, int end) {
     for (int y = begin | 1; y < end && level.y.young(y); y += 2) {
-      std::ranges::fill(desk.sum, 0.f);
-      std::ranges::fill(desk.weight, 0.f);
       if (diamond()) {
         const Slot &up = loaded(desk, y - 1), &here = loaded(desk, y), &down = loaded(desk, y + 1);
-        add_heights(desk, desk.up, y, {up.height.data(), here.height.data(), down.height.data()},
+        sum_heights(desk, desk.up, y, {up.height.data(), here.height.data(), down.height.data()},
                     Take::sides, false);
-        add_weights(desk, y, {up.known.data(), here.known.data(), down.known.data()}, Take::sides);
+        sum_weights(desk, y, {up.known.data(), here.known.data(), down.known.data()}, Take::sides);
       }
       for (int x = 1; x < level.x.last(); x += 2)
         settle(level, x, y, desk.sum[std::size_t(x)], desk.weight[std::size_t(x)]);
@@ -487,8 +505,6 @@ void Pyramid::coarsen(const Level& level, Level& next, const Run& run) {
 void Pyramid::coarsen_row(Desk& desk, Level& next, int next_y) const {
   const Level& level = desk.level;
   const int y = level.y.from_next(next_y, next.y.last());
-  std::ranges::fill(desk.sum, 0.f);
-  std::ranges::fill(desk.weight, 0.f);
   const Slot* here = &loaded(desk, y);
   if (carried_up_) {
     const bool has_up = level.y.below(y) > 0, has_down = level.y.above(y) > 0;
@@ -498,24 +514,24 @@ void Pyramid::coarsen_row(Desk& desk, Level& next, int next_y) const {
     const auto row = [&](const Slot* slot, const std::vector<float> Slot::*what) {
       return slot ? (slot->*what).data() : zeros_.data();
     };
-    std::ranges::fill(desk.sum, 0.f);
-    std::ranges::fill(desk.weight, 0.f);
-    add_heights(desk, desk.up, y,
+    sum_heights(desk, desk.up, y,
                 {row(up, &Slot::height), here->height.data(), row(down, &Slot::height)}, Take::both,
                 false);
-    add_weights(desk, y, {row(up, &Slot::known), here->known.data(), row(down, &Slot::known)},
+    sum_weights(desk, y, {row(up, &Slot::known), here->known.data(), row(down, &Slot::known)},
                 Take::both);
   }
   float* z = next.z.row(next_y).data();
   float* weight = next.weight.row(next_y).data();
   const float* own_z = finest(level) ? zeros_.data() : level.z.row(y).data();
   const float* own_weight = finest(level) ? zeros_.data() : level.weight.row(y).data();
-  for (int next_x = 0; next_x < next.x.n; ++next_x) {
-    const std::size_t x = std::size_t(level.x.from_next(next_x, next.x.last()));
-    const bool known = here->known[x] != 0;
-    z[next_x] = known ? here->height[x] : own_z[x] + desk.sum[x];
-    weight[next_x] = known ? known_weight : own_weight[x] + desk.weight[x];
-  }
+  const auto take = [&](int next_x, int x) {
+    const std::size_t i = std::size_t(x);
+    const std::int32_t known = -std::int32_t(here->known[i] != 0);
+    z[next_x] = choose(known, here->height[i], own_z[x] + desk.sum[i]);
+    weight[next_x] = choose(known, known_weight, own_weight[x] + desk.weight[i]);
+  };
+  for (int next_x = 0; next_x < next.x.last(); ++next_x) take(next_x, 2 * next_x);
+  take(next.x.last(), level.x.last());
 }
 
 // ---- Top-down
@@ -557,8 +573,7 @@ float Pyramid::displacement(const Level& level, int x, int y, double distance) c
 /// desk.sum = what the ascendants of the edges or centres in row y give them.
 void Pyramid::sum_ascendants(Desk& desk, int y, const Rows& z, bool centres) const {
   const bool ends_only = !centres && !diamond();
-  std::ranges::fill(desk.sum, 0.f);
-  add_heights(desk, desk.down, y, z, centres ? Take::corners : Take::sides, ends_only);
+  sum_heights(desk, desk.down, y, z, centres ? Take::corners : Take::sides, ends_only);
   if (noise_.rs == 0) return;
   const Level& level = desk.level;
   for (int x = 0; x < level.x.n; ++x) {
@@ -599,9 +614,12 @@ void Pyramid::refine_row(Desk& desk, Level& level, int y, bool centres) const {
                  centres);
   float* z = level.z.row(y).data();
   const float* weight = level.weight.row(y).data();
-  const bool young_columns = centres || !level.y.young(y);
-  for (int x = 0; x < level.x.n; ++x)
-    if (level.x.young(x) == young_columns && weight[x] >= 0) z[x] = desk.sum[std::size_t(x)];
+  const std::int32_t other = centres || !level.y.young(y) ? 0 : -1;  // young columns, or the old
+  for (int x = 0; x < level.x.n; ++x) {
+    const std::size_t i = std::size_t(x);
+    const std::int32_t take = (desk.young[i] ^ other) & -std::int32_t(weight[x] >= 0);
+    z[x] = choose(take, desk.sum[i], z[x]);
+  }
 }
 
 /// Row y of level 0 with its old nodes or its centres complete: all that its edges need.
@@ -613,18 +631,18 @@ Pyramid::Slot& Pyramid::with_ascendants(Desk& desk, int y) const {
     loaded(desk, y);
     const Level& next = coarser(level);
     const float* z = next.z.row(level.y.next(y)).data();
-    for (int next_x = 0; next_x < next.x.n; ++next_x) {
-      const std::size_t x = std::size_t(level.x.from_next(next_x, next.x.last()));
-      if (slot.known[x] == 0) slot.height[x] = z[next_x];
-    }
+    for (int next_x = 0; next_x < next.x.last(); ++next_x)
+      slot.height[std::size_t(2 * next_x)] = z[next_x];
+    slot.height.back() = z[next.x.last()];
     return slot;
   }
   const Slot& up = with_ascendants(desk, y - 1);
   const Slot& down = with_ascendants(desk, y + 1);
   with_centres(desk, y);
   sum_ascendants(desk, y, {up.height.data(), slot.height.data(), down.height.data()}, true);
-  for (int x = 1; x < level.x.last(); x += 2)
-    if (slot.known[std::size_t(x)] == 0) slot.height[std::size_t(x)] = desk.sum[std::size_t(x)];
+  for (std::size_t x = 0; x < slot.height.size(); ++x)
+    slot.height[x] =
+        choose(desk.young[x] & -std::int32_t(slot.known[x] == 0), desk.sum[x], slot.height[x]);
   return slot;
 }
 
@@ -637,18 +655,17 @@ void Pyramid::store_row(Desk& desk, int y, Raster<float>& out) const {
   const float* here = with_ascendants(desk, y).height.data();
   sum_ascendants(desk, y, {up, here, down}, false);
 
-  const float* z = fill_.dem.z.row(y).data();
-  const std::uint8_t* known = fill_.dem.known.row(y).data();
-  float* to = out.row(y).data();
-  const int edges = level.y.young(y) ? 0 : 1, last = level.x.last();
-  for (int x = 0; x <= last; ++x) {
-    const bool edge = x % 2 == edges;
-    const float height = edge ? desk.sum[std::size_t(x)] : here[x];
-    to[x] = known[x] ? z[x] : height + fill_.reference_m;
+  const float* __restrict z = fill_.dem.z.row(y).data();
+  const std::uint8_t* __restrict known = fill_.dem.known.row(y).data();
+  const std::int32_t* __restrict young = desk.young.data();
+  const float* __restrict sum = desk.sum.data();
+  const std::int32_t other = level.y.young(y) ? -1 : 0;  // edges: young columns, or the old ones
+  const float reference = fill_.reference_m;
+  float* __restrict to = out.row(y).data();
+  for (int x = 0; x < level.x.n; ++x) {
+    const float height = choose(young[x] ^ other, sum[x], here[x]) + reference;
+    to[x] = choose(-std::int32_t(known[x] != 0), z[x], height);
   }
-  const bool last_is_edge = edges == 0;  // the last column is an old one, whatever its number
-  if (!known[last])
-    to[last] = (last_is_edge ? desk.sum[std::size_t(last)] : here[last]) + fill_.reference_m;
 }
 
 // ---- The DEM after the bottom-up pass
