@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <stdexcept>
 
 #include "midpoint.h"
+#include "row_kernels.h"
 
 namespace dem {
 namespace {
@@ -17,22 +17,11 @@ const Range bend_range{-100, 100};
 
 /// The lowest known elevation, 0 when there is none.
 float lowest_known(const Dem& dem) {
-  constexpr std::size_t lanes = 16;  // independent minima, which the compiler takes side by side
-  constexpr float inf = std::numeric_limits<float>::infinity();
-  const float* z = dem.z.cells().data();
-  const std::uint8_t* known = dem.known.cells().data();
-  std::array<float, lanes> lowest;
-  lowest.fill(inf);
-  const auto take = [&](std::size_t i, float& least) {
-    const float height = choose(-std::int32_t(known[i] != 0), z[i], inf);
-    least = height < least ? height : least;
-  };
-  const std::size_t n = dem.z.cells().size(), whole = n - n % lanes;
-  for (std::size_t i = 0; i < whole; i += lanes)
-    for (std::size_t lane = 0; lane < lanes; ++lane) take(i + lane, lowest[lane]);
-  for (std::size_t i = whole; i < n; ++i) take(i, lowest[0]);
-  const float least = *std::ranges::min_element(lowest);
-  return least == inf ? 0 : least;
+  float lowest = std::numeric_limits<float>::infinity();
+  for (int row = 0; row < dem.z.rows(); ++row)
+    lowest = std::min(
+        lowest, lowest_of_known(dem.z.row(row).data(), dem.known.row(row).data(), dem.z.cols()));
+  return lowest == std::numeric_limits<float>::infinity() ? 0 : lowest;
 }
 
 /// What the passes share; the heights' zero is the datum where bends act on it, else near the data.

@@ -2,19 +2,12 @@
 // The passes that MCMD, MDI and MD are made of. Private to the library.
 
 #include <array>
-#include <bit>
 #include <cstdint>
 
 #include "dem/mcmd.h"
 #include "dem/run.h"
 
 namespace dem {
-
-/// yes where the mask is all ones, no where it is zero: a choice without a branch.
-inline float choose(std::int32_t mask, float yes, float no) {
-  return std::bit_cast<float>((std::bit_cast<std::int32_t>(yes) & mask) |
-                              (std::bit_cast<std::int32_t>(no) & ~mask));
-}
 
 /// The exponent I of equations 2 and 3, for each CellKind.
 using Bend = std::array<double, 3>;

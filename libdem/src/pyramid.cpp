@@ -24,6 +24,7 @@
 #include "midpoint.h"
 #include "parallel.h"
 #include "random.h"
+#include "row_kernels.h"
 
 namespace dem {
 
@@ -90,11 +91,6 @@ struct Sides {
   bool operator==(const Sides&) const = default;
 };
 
-/// Weights of the eight neighbours: left, right, up, down, and the corners between.
-struct Cross {
-  float l = 0, r = 0, u = 0, d = 0, ul = 0, ur = 0, dl = 0, dr = 0;
-};
-
 /// What a node takes from its neighbours.
 struct Rule {
   Sides sides;
@@ -151,40 +147,7 @@ class Rules {
   std::vector<Rule> rules_;
 };
 
-/// Three rows of nodes; the outer two may be rows of zeros.
-struct Rows {
-  const float* up;
-  const float* here;
-  const float* down;
-};
-
-/// Which neighbours a sum takes.
-enum class Take { sides, corners, both };
-
-// Sums are paired so that a mirrored raster gives the mirrored sum, bit for bit.
-
-/// out[x] = (Add: +=) weighted neighbours, for 1 <= x < n - 2.
-template <bool Add>
-void sum_inner(const Rows& z, const Cross& w, Take take, int n, float* out) {
-  const float* __restrict up = z.up;
-  const float* __restrict here = z.here;
-  const float* __restrict down = z.down;
-  float* __restrict sum = out;
-  const auto side = [&](int x) {
-    return (w.l * here[x - 1] + w.r * here[x + 1]) + (w.u * up[x] + w.d * down[x]);
-  };
-  const auto corner = [&](int x) {
-    return (w.ul * up[x - 1] + w.ur * up[x + 1]) + (w.dl * down[x - 1] + w.dr * down[x + 1]);
-  };
-  const auto each = [&](auto value) {
-    for (int x = 1; x < n - 2; ++x) sum[x] = Add ? sum[x] + value(x) : value(x);
-  };
-  if (take == Take::sides) each(side);
-  if (take == Take::corners) each(corner);
-  if (take == Take::both) each([&](int x) { return side(x) + corner(x); });
-}
-
-/// The same for one node anywhere.
+/// The sums of row_kernels.h for one node anywhere.
 template <bool Add>
 void sum_one(const Rows& z, const Cross& w, Take take, int n, int x, float* out) {
   const auto at = [&](const float* row, int i) { return i >= 0 && i < n ? row[i] : 0; };
@@ -322,27 +285,12 @@ Pyramid::Slot& Pyramid::loaded(Desk& desk, int y) const {
   if (slot.y == y) return slot;
   slot.y = y;
   const Level& level = desk.level;
-  const std::size_t n = std::size_t(level.x.n);
-  float* __restrict height = slot.height.data();
-  float* __restrict known = slot.known.data();
-  if (finest(level)) {
-    const float* __restrict z = fill_.dem.z.row(y).data();
-    const std::uint8_t* __restrict mask = fill_.dem.known.row(y).data();
-    const float reference = fill_.reference_m;
-    for (std::size_t x = 0; x < n; ++x) {
-      const std::int32_t is_known = -std::int32_t(mask[x] != 0);
-      known[x] = choose(is_known, 1.0f, 0.0f);
-      height[x] = choose(is_known, z[x] - reference, 0.0f);
-    }
-  } else {
-    const float* __restrict z = level.z.row(y).data();
-    const float* __restrict weight = level.weight.row(y).data();
-    for (std::size_t x = 0; x < n; ++x) {
-      const std::int32_t is_known = -std::int32_t(weight[x] < 0);
-      known[x] = choose(is_known, 1.0f, 0.0f);
-      height[x] = choose(is_known, z[x], 0.0f);
-    }
-  }
+  if (finest(level))
+    load_known(fill_.dem.z.row(y).data(), fill_.dem.known.row(y).data(), fill_.reference_m,
+               level.x.n, slot.height.data(), slot.known.data());
+  else
+    load_settled(level.z.row(y).data(), level.weight.row(y).data(), level.x.n, slot.height.data(),
+                 slot.known.data());
   return slot;
 }
 
@@ -360,17 +308,8 @@ Pyramid::Slot& Pyramid::with_centres(Desk& desk, int y) const {
               Take::sides, false);
   sum_weights(desk, y, {up.known.data(), slot.known.data(), down.known.data()}, Take::sides);
 
-  // A centre that is unknown and has known edges.
-  const std::int32_t* __restrict young = desk.young.data();
-  const float* __restrict sum = desk.sum.data();
-  const float* __restrict weight = desk.weight.data();
-  float* __restrict height = slot.height.data();
-  float* __restrict known = slot.known.data();
-  for (int x = 0; x < desk.level.x.n; ++x) {
-    const std::int32_t take = young[x] & -std::int32_t(weight[x] > known[x] * 1e30f);
-    height[x] = choose(take, sum[x] / std::max(weight[x], 1e-30f), height[x]);
-    known[x] = choose(take, 1.0f, known[x]);
-  }
+  complete_reached(desk.young.data(), desk.sum.data(), desk.weight.data(), desk.level.x.n,
+                   slot.height.data(), slot.known.data());
   return slot;
 }
 
@@ -407,7 +346,8 @@ void Pyramid::sum_heights(Desk& desk, Rules& rules, int y, const Rows& z, Take t
   float* sum = desk.sum.data();
   const auto of_kind = [&](auto add, const Rows& rows, std::size_t kind) {
     if (n > 3)
-      sum_inner<add>(rows, rules.of(inner_sides(level, y, ends_only)).bent[kind], take, n, sum);
+      (add ? add_neighbours : sum_neighbours)(
+          rows, rules.of(inner_sides(level, y, ends_only)).bent[kind], take, n, sum);
     for_outer_columns(n, [&](int x) {
       sum_one<add>(rows, rules.of(sides_at(level, x, y, ends_only)).bent[kind], take, n, x, sum);
     });
@@ -436,8 +376,7 @@ void Pyramid::sum_weights(Desk& desk, int y, const Rows& known, Take take) const
   const Level& level = desk.level;
   const int n = level.x.n;
   float* weight = desk.weight.data();
-  if (n > 3)
-    sum_inner<false>(known, desk.up.of(inner_sides(level, y, false)).plain, take, n, weight);
+  if (n > 3) sum_neighbours(known, desk.up.of(inner_sides(level, y, false)).plain, take, n, weight);
   for_outer_columns(n, [&](int x) {
     sum_one<false>(known, desk.up.of(sides_at(level, x, y, false)).plain, take, n, x, weight);
   });
@@ -640,9 +579,8 @@ Pyramid::Slot& Pyramid::with_ascendants(Desk& desk, int y) const {
   const Slot& down = with_ascendants(desk, y + 1);
   with_centres(desk, y);
   sum_ascendants(desk, y, {up.height.data(), slot.height.data(), down.height.data()}, true);
-  for (std::size_t x = 0; x < slot.height.size(); ++x)
-    slot.height[x] =
-        choose(desk.young[x] & -std::int32_t(slot.known[x] == 0), desk.sum[x], slot.height[x]);
+  complete_unknown(desk.young.data(), desk.sum.data(), slot.known.data(), level.x.n,
+                   slot.height.data());
   return slot;
 }
 
@@ -655,17 +593,9 @@ void Pyramid::store_row(Desk& desk, int y, Raster<float>& out) const {
   const float* here = with_ascendants(desk, y).height.data();
   sum_ascendants(desk, y, {up, here, down}, false);
 
-  const float* __restrict z = fill_.dem.z.row(y).data();
-  const std::uint8_t* __restrict known = fill_.dem.known.row(y).data();
-  const std::int32_t* __restrict young = desk.young.data();
-  const float* __restrict sum = desk.sum.data();
   const std::int32_t other = level.y.young(y) ? -1 : 0;  // edges: young columns, or the old ones
-  const float reference = fill_.reference_m;
-  float* __restrict to = out.row(y).data();
-  for (int x = 0; x < level.x.n; ++x) {
-    const float height = choose(young[x] ^ other, sum[x], here[x]) + reference;
-    to[x] = choose(-std::int32_t(known[x] != 0), z[x], height);
-  }
+  store_known(fill_.dem.z.row(y).data(), fill_.dem.known.row(y).data(), fill_.reference_m,
+              desk.young.data(), other, desk.sum.data(), here, level.x.n, out.row(y).data());
 }
 
 // ---- The DEM after the bottom-up pass
