@@ -40,10 +40,9 @@ void check_size(const char* name, Size size, Size expected) {
                                             size.cols, size.rows, expected.cols, expected.rows));
 }
 
-/// Horn's slope in degrees; the cell must have eight neighbours.
-double slope_at(const Raster<float>& z, int col, int row, Spacing cell) {
-  const auto g = inner_gradient(z.row(row - 1), z.row(row), z.row(row + 1), col, cell);
-  return std::atan(std::sqrt(g.squared())) * kDegrees;
+/// The tangent of Horn's slope; the cell must have eight neighbours.
+double steepness(const Raster<float>& z, int col, int row, Spacing cell) {
+  return std::sqrt(inner_gradient(z.row(row - 1), z.row(row), z.row(row + 1), col, cell).squared());
 }
 
 /// Calls each(row) for all rows, in parallel, and reports now and then.
@@ -191,7 +190,9 @@ Errors compare(const Raster<float>& truth, const Raster<float>& got, const Mask&
       errors[at++] = float(e);
       sums.add({e, e * e, std::abs(e), std::abs(e)});
       if (!inner_row || col == 0 || col == size.cols - 1) continue;
-      const double slope = slope_at(got, col, row, cell) - slope_at(truth, col, row, cell);
+      // atan a - atan b = atan((a - b) / (1 + a b)) for a, b >= 0
+      const double a = steepness(got, col, row, cell), b = steepness(truth, col, row, cell);
+      const double slope = std::atan((a - b) / (1 + a * b)) * kDegrees;
       sums.slope_squares += slope * slope;
       ++sums.slopes;
     }
@@ -226,7 +227,7 @@ Raster<float> slope_deg(const Raster<float>& z, std::span<const Spacing> spacing
     if (row == 0 || row == z.rows() - 1) return;
     const Spacing cell = spacing[spacing.size() == 1 ? 0 : std::size_t(row)];
     for (int col = 1; col < z.cols() - 1; ++col)
-      slope(col, row) = float(slope_at(z, col, row, cell));
+      slope(col, row) = float(std::atan(steepness(z, col, row, cell)) * kDegrees);
   });
   return slope;
 }

@@ -103,14 +103,20 @@ double log_uniform(double least, double most, Sequence& random) {
   return size;
 }
 
-/// Removes up to `area` cells around `start` from `keep`; returns how many. The blob grows by one
-/// random cell of its rim at a time (Eden growth).
+/// Removes up to `area` cells around `start` from `keep`; returns how many. The blob is a chain of
+/// bursts: each begins at a random cell of the blob's rim and grows by one random cell of its own
+/// rim at a time (Eden growth). One burst alone would be nearly round.
 std::size_t cut_blob(Mask& keep, Cell start, std::size_t area, Sequence& random,
                      std::vector<Cell>& rim) {
-  std::size_t cut = 0;
+  std::size_t cut = 0, burst_ends = 0, burst_rim = 0;  // the burst's rim: rim[burst_rim] and on
   rim.assign(1, start);
   while (cut < area && !rim.empty()) {
-    const auto at = std::size_t(random.below(rim.size()));
+    if (cut >= burst_ends || burst_rim == rim.size()) {
+      std::swap(rim[std::size_t(random.below(rim.size()))], rim.back());
+      burst_rim = rim.size() - 1;
+      burst_ends = cut + 1 + std::size_t(random.below(area / 6 + 1));
+    }
+    const auto at = burst_rim + std::size_t(random.below(rim.size() - burst_rim));
     const Cell cell = rim[at];
     rim[at] = rim.back();
     rim.pop_back();
@@ -240,7 +246,7 @@ Dem sample_voids(const Dem& dem, const VoidOptions& options) {
   for (bool on_steep = false; gone < options.remove; on_steep = !on_steep) {
     // A start that is still known: steep ground may be used up, then any.
     std::optional<Cell> start;
-    for (int i = 0; i < 64 && on_steep && !steep.none() && !start; ++i)
+    for (int i = 0; i < 8 && on_steep && !steep.none() && !start; ++i)
       if (const Cell cell = steep.draw(random); mask(cell.col, cell.row)) start = cell;
     while (!start)
       if (const Cell cell{int(random.below(std::uint64_t(dem.size().cols))),
