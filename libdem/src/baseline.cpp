@@ -18,8 +18,8 @@ constexpr int kRowsAtOnce = 64;
 constexpr std::int32_t kNone = -1;
 constexpr std::int64_t kFirst = std::numeric_limits<std::int64_t>::min();
 
-/// Weights that make a squared distance x * dc^2 + y * dr^2 a whole number below 2^60: equal
-/// distances are then equal numbers. They stand in the ratio dx^2 : dy^2.
+/// Weights that make a squared distance x * dc^2 + y * dr^2 a whole number below 2^61: equal
+/// distances are then equal numbers. They are dx^2 and dy^2 times the same power of two, rounded.
 struct Weights {
   std::int64_t x = 1;
   std::int64_t y = 1;
@@ -29,11 +29,11 @@ Weights weights_of(Spacing cell, Size size) {
   if (!(cell.dx_m > 0 && cell.dy_m > 0 && std::isfinite(cell.dx_m) && std::isfinite(cell.dy_m)))
     throw std::invalid_argument(
         fmt::format("dem.spacing = {} x {} m; must be > 0", cell.dx_m, cell.dy_m));
-  const double longest = std::max(size.cols, size.rows), larger = std::max(cell.dx_m, cell.dy_m);
-  const double unit = std::floor(1152921504606846976.0 / (longest * longest));  // 2^60
+  const double longest =
+      std::max(size.cols, size.rows) * std::max(cell.dx_m, cell.dy_m);  // of either side
+  const int power = 59 - std::ilogb(longest * longest);
   const auto weight = [&](double length) {
-    const double ratio = length / larger;
-    return std::max<std::int64_t>(1, std::int64_t(ratio * ratio * unit));
+    return std::max<std::int64_t>(1, std::llrint(std::ldexp(length * length, power)));
   };
   return {weight(cell.dx_m), weight(cell.dy_m)};
 }
