@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -266,33 +267,38 @@ TEST(PowerSpectrum, RefusesNonsense) {
   EXPECT_THROW(power_spectrum(Raster<float>({4, 4}), {}, 0), std::invalid_argument);
 }
 
-TEST(SpectralSlope, FindsTheExponentOfASum) {
-  // 128 x 128 cells: cosines of every wave, random phases, amplitude k^(-beta / 2).
-  for (const double beta : {2.0, 3.0}) {
-    constexpr int kSide = 128;
-    Raster<double> sum({kSide, kSide});
-    std::vector<double> cosine(kSide), sine(kSide);
-    for (int i = 0; i < kSide; ++i) {
-      cosine[std::size_t(i)] = std::cos(2 * std::numbers::pi * i / kSide);
-      sine[std::size_t(i)] = std::sin(2 * std::numbers::pi * i / kSide);
+/// 128 x 128 cells: cosines of every wave up to 40 a side, random phases, amplitude k^(-beta / 2).
+Raster<float> fractal(double beta, std::uint64_t seed) {
+  constexpr int kSide = 128, kMost = 40;
+  std::vector<std::complex<double>> turn(kSide);
+  for (int i = 0; i < kSide; ++i)
+    turn[std::size_t(i)] = std::polar(1.0, 2 * std::numbers::pi * i / kSide);
+  Raster<double> sum({kSide, kSide});
+  for (int u = 0; u <= kMost; ++u) {
+    std::vector<std::complex<double>> rows(kSide);
+    for (int v = u == 0 ? 1 : -kMost; v <= kMost; ++v) {
+      const double phase = std::numbers::pi * signed_uniform(random_bits(seed, 0, u, v));
+      const auto wave = std::polar(std::pow(std::hypot(u, v), -beta / 2), phase);
+      for (int row = 0; row < kSide; ++row)
+        rows[std::size_t(row)] += wave * turn[std::size_t((v + kSide) * row % kSide)];
     }
-    for (int v = -40; v <= 40; ++v)
-      for (int u = 0; u <= 40; ++u) {
-        if (u == 0 && v <= 0) continue;
-        const double phase = std::numbers::pi * signed_uniform(random_bits(7, 0, u, v));
-        const double height = std::pow(std::hypot(u, v), -beta / 2);
-        const double a = height * std::cos(phase), b = height * std::sin(phase);
-        for (int row = 0; row < kSide; ++row)
-          for (int col = 0; col < kSide; ++col) {
-            const auto i = std::size_t((u * col + (v + kSide) * row) % kSide);
-            sum(col, row) += a * cosine[i] - b * sine[i];
-          }
-      }
-    Raster<float> z({kSide, kSide});
-    for (std::size_t i = 0; i < z.cells().size(); ++i) z.cells()[i] = float(sum.cells()[i]);
-    const auto spectrum = power_spectrum(z, {30, 30});
-    // Between 4 and 32 waves a side; the rings average 20 to 800 waves, which leaves about 0.1.
-    EXPECT_NEAR(spectral_slope(spectrum, kSide * 30 / 33.0, kSide * 30 / 3.9), beta, 0.15);
+    for (int row = 0; row < kSide; ++row)
+      for (int col = 0; col < kSide; ++col)
+        sum(col, row) += (rows[std::size_t(row)] * turn[std::size_t(u * col % kSide)]).real();
+  }
+  Raster<float> z(sum.size());
+  std::ranges::transform(sum.cells(), z.cells().begin(), [](double h) { return float(h); });
+  return z;
+}
+
+TEST(SpectralSlope, FindsTheExponentOfASum) {
+  // Between 4 and 32 waves a side. The ring of 4 waves has few of them, tied by Hann's window: one
+  // surface leaves about 0.17, the mean of 16 about 0.04; four of these are allowed.
+  for (const double beta : {2.0, 3.0}) {
+    double sum = 0;
+    for (std::uint64_t seed = 0; seed < 16; ++seed)
+      sum += spectral_slope(power_spectrum(fractal(beta, seed), {30, 30}), 115, 985);
+    EXPECT_NEAR(sum / 16, beta, 0.16);
   }
 }
 

@@ -142,15 +142,21 @@ Raster<std::complex<double>> transform(const Raster<double>& z) {
   const auto cols = std::size_t(z.cols()), rows = std::size_t(z.rows());
   Raster<std::complex<double>> waves({z.cols() / 2 + 1, z.rows()});
   Eigen::FFT<double> fft;
-  std::vector<std::complex<double>> in(std::max(cols, rows)), out(std::max(cols, rows));
+  std::vector<std::complex<double>> in(std::max(cols, rows)), out(in.size());
+  const auto transform_line = [&](std::size_t n) {
+    if (n > 1)
+      fft.fwd(out.data(), in.data(), Eigen::Index(n));
+    else
+      out[0] = in[0];
+  };
   for (int row = 0; row < z.rows(); ++row) {
     std::copy_n(z.row(row).begin(), cols, in.begin());
-    fft.fwd(out.data(), in.data(), Eigen::Index(cols));
+    transform_line(cols);
     std::copy_n(out.begin(), waves.cols(), waves.row(row).begin());
   }
   for (int col = 0; col < waves.cols(); ++col) {
     for (int row = 0; row < z.rows(); ++row) in[std::size_t(row)] = waves(col, row);
-    fft.fwd(out.data(), in.data(), Eigen::Index(rows));
+    transform_line(rows);
     for (int row = 0; row < z.rows(); ++row) waves(col, row) = out[std::size_t(row)];
   }
   return waves;
