@@ -18,7 +18,7 @@ struct Run {
 
   /// Called now and then, from the calling thread, with the part done (0 to 1) and what is being
   /// done; returning false stops the work, which then throws Cancelled.
-  std::function<bool(double part, std::string_view what)> progress;
+  std::function<bool(double part, std::string_view what)> progress = {};
 
   /// Reports progress; throws Cancelled when the callback returns false.
   void report(double part, std::string_view what) const {
