@@ -133,13 +133,13 @@ Raster<float> fill_mcmd(const Dem& dem, const McmdOptions& o, const Run& run,
     const Dem carried = carry_up_mcmd(dem, o, run.part(0, 0.7), kinds);
     const auto fill =
         midpoint(carried, kinds, o.subdivision, o.datum_m, bends(o), run.part(0.7, 1));
-    return displace(fill, bend(o), noise(o), o.datum_m);
+    return displace(fill, bend(o), noise(o));
   }
   check_options(o);
   check_fillable(dem);
   check_kinds(dem, kinds);
   const auto fill = midpoint(dem, kinds, o.subdivision, o.datum_m, bends(o), run);
-  return carry_up_and_displace(fill, pull(o), bend(o), noise(o), o.datum_m);
+  return carry_up_and_displace(fill, pull(o), bend(o), noise(o));
 }
 
 Dem carry_up_mcmd(const Dem& dem, const McmdOptions& o, const Run& run,
@@ -166,7 +166,7 @@ Raster<float> fill_mdi(const Dem& dem, const MdiOptions& o, const Run& run) {
   const Dem carried = carry_up_mdi(dem, o, run.part(0, 0.7));
   const Raster<CellKind> no_kinds;
   const auto fill = midpoint(carried, no_kinds, o.subdivision, o.datum_m, false, run.part(0.7, 1));
-  return displace(fill, {}, noise(o), o.datum_m);
+  return displace(fill, {}, noise(o));
 }
 
 Dem carry_up_mdi(const Dem& dem, const MdiOptions& o, const Run& run) {

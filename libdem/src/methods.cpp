@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "dem/baseline.h"
 #include "dem/mcmd.h"
 
 namespace dem {
@@ -32,6 +33,8 @@ const std::vector<FillMethod>& fill_methods() {
           "md", "plain midpoint displacement from the corners down; spikes at sparse data",
           "belhadj2007", {},
           [](const Dem& d, const MdOptions& o, const Run& r) { return fill_md(d, o, r); }),
+      make_method<NearestOptions>("nearest", "the elevation of the nearest known cell",
+                                  "felzenszwalb2012", {}, fill_nearest),
   };
   return table;
 }

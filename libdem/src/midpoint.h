@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "dem/mcmd.h"
 #include "dem/run.h"
@@ -46,9 +47,10 @@ struct Midpoint {
 };
 
 /// Top-down from the known cells alone (plain MD), coarsest stride first: every unknown cell
-/// becomes the mean of its ascendants, plus noise. Unknown roots start at root_m.
-/// Known cells come back bit for bit.
-Raster<float> displace(const Midpoint& fill, const Bend& bend, const Noise& noise, double root_m);
+/// becomes the mean of its ascendants, plus noise. Unknown roots start at root_m, or at the mean of
+/// the known ones when that is not given. Known cells come back bit for bit.
+Raster<float> displace(const Midpoint& fill, const Bend& bend, const Noise& noise,
+                       std::optional<double> root_m = {});
 
 /// Bottom-up, from the finest stride to the coarsest an unknown ascendant becomes the weighted mean
 /// of its known children, once they are complete. Returns the DEM with these ascendants known.
@@ -56,7 +58,7 @@ Dem carry_up_by_levels(const Midpoint& fill, const Pull& pull);
 
 /// displace() of carry_up_by_levels(), in one go.
 Raster<float> carry_up_and_displace(const Midpoint& fill, const Pull& pull, const Bend& bend,
-                                    const Noise& noise, double root_m);
+                                    const Noise& noise);
 
 /// Bottom-up in the waves of [belhadj2007] algorithm 1: every unknown ascendant of a cell of this
 /// wave becomes the mean of its known children, and a cell of the next wave.

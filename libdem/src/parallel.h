@@ -2,15 +2,20 @@
 // Rows in parallel. Private to the library.
 
 #include <tbb/blocked_range.h>
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
+
 namespace dem {
 
-/// Runs `work()` with at most `threads` threads for the loops inside it (0: all cores).
+/// Runs `work()` with at most `threads` threads for the loops inside it (0: all cores). More
+/// threads than cores are not started.
 template <class Work>
 auto with_threads(int threads, Work work) {
-  tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
+  const int cores = tbb::info::default_concurrency();
+  tbb::task_arena arena(threads > 0 ? std::min(threads, cores) : cores);
   return arena.execute(work);
 }
 

@@ -168,11 +168,12 @@ class Pyramid {
   explicit Pyramid(const Midpoint& fill);
 
   /// Bottom-up with means.
-  void carry_up(const Pull& pull);
+  void carry_up(const Pull& pull, const Run& run);
   /// Bottom-up without: only known cells are known, as in plain MD.
   void sample();
 
-  Raster<float> displace(const Bend& bend, const Noise& noise, double root_m);
+  Raster<float> displace(const Bend& bend, const Noise& noise, std::optional<double> root_m,
+                         const Run& run);
 
   /// After carry_up: the DEM with the ascendants that became known.
   Dem known_cells() const;
@@ -215,6 +216,7 @@ class Pyramid {
   void coarsen(const Level& level, Level& next, const Run& run);
   void coarsen_row(Desk& desk, Level& next, int next_y) const;
 
+  float mean_of_known_roots() const;
   float displacement(const Level& level, int x, int y, double distance) const;
   void sum_ascendants(Desk& desk, int y, const Rows& z, bool centres) const;
   void refine(Level& level, const Run& run);
@@ -384,11 +386,11 @@ void Pyramid::sum_weights(Desk& desk, int y, const Rows& known, Take take) const
 
 // ---- Bottom-up
 
-void Pyramid::carry_up(const Pull& pull) {
+void Pyramid::carry_up(const Pull& pull, const Run& whole) {
   pull_ = pull;
   carried_up_ = true;
   for (std::size_t k = 0; k < levels_.size(); ++k) {
-    const Run run = k == 0 ? fill_.run : fill_.run.part(1, 1);
+    const Run run = k == 0 ? whole : whole.part(1, 1);
     if (k > 0) finish_young(levels_[k], run);
     if (k + 1 < levels_.size()) coarsen(levels_[k], levels_[k + 1], run);
   }
@@ -475,29 +477,47 @@ void Pyramid::coarsen_row(Desk& desk, Level& next, int next_y) const {
 
 // ---- Top-down
 
-Raster<float> Pyramid::displace(const Bend& bend, const Noise& noise, double root_m) {
+Raster<float> Pyramid::displace(const Bend& bend, const Noise& noise, std::optional<double> root_m,
+                                const Run& run) {
   bend_ = bend;
   noise_ = noise;
-  const float root = float(root_m) - fill_.reference_m;
+  const float root = root_m ? float(*root_m) - fill_.reference_m : mean_of_known_roots();
   Raster<float> out(fill_.dem.size());
   if (levels_.size() == 1) {  // at most 2 x 2 cells: all roots
-    for (int y = 0; y < out.rows(); ++y)
-      for (int x = 0; x < out.cols(); ++x)
-        out(x, y) = fill_.dem.known(x, y) ? fill_.dem.z(x, y) : float(root_m);
+    for (std::size_t i = 0; i < out.cells().size(); ++i)
+      out.cells()[i] =
+          fill_.dem.known.cells()[i] ? fill_.dem.z.cells()[i] : root + fill_.reference_m;
     return out;
   }
   Level& roots = levels_.back();
   for (std::size_t i = 0; i < roots.z.cells().size(); ++i)
     if (roots.weight.cells()[i] >= 0) roots.z.cells()[i] = root;
-  for (std::size_t k = levels_.size() - 2; k > 0; --k) refine(levels_[k], fill_.run.part(0, 0));
+  for (std::size_t k = levels_.size() - 2; k > 0; --k) refine(levels_[k], run.part(0, 0));
 
-  const Level& finest_level = levels_.front();
-  const int blocks_of_rows = finest_level.y.n;
-  in_row_blocks(finest_level, blocks_of_rows, "top-down", fill_.run,
-                [&](Desk& desk, int begin, int end) {
-                  for (int y = begin; y < end; ++y) store_row(desk, y, out);
-                });
+  in_row_blocks(levels_.front(), out.rows(), "top-down", run, [&](Desk& desk, int begin, int end) {
+    for (int y = begin; y < end; ++y) store_row(desk, y, out);
+  });
   return out;
+}
+
+/// The mean of the roots that are known, relative to the reference; 0 when none is.
+float Pyramid::mean_of_known_roots() const {
+  double sum = 0;
+  int n = 0;
+  for (int row : {0, fill_.dem.z.rows() - 1})
+    for (int col : {0, fill_.dem.z.cols() - 1}) {
+      const Level& roots = levels_.back();
+      if (levels_.size() == 1) {
+        if (!fill_.dem.known(col, row)) continue;
+        sum += double(fill_.dem.z(col, row) - fill_.reference_m);
+      } else {
+        const int x = std::min(col, roots.x.last()), y = std::min(row, roots.y.last());
+        if (roots.weight(x, y) >= 0) continue;
+        sum += double(roots.z(x, y));
+      }
+      ++n;
+    }
+  return n ? float(sum / n) : 0;
 }
 
 /// Equation 1 for node (x, y) of a level, times the mean distance of its ascendants.
@@ -628,28 +648,29 @@ Dem Pyramid::known_cells() const {
 
 // ---- The passes
 
-Raster<float> displace(const Midpoint& fill, const Bend& bend, const Noise& noise, double root_m) {
+Raster<float> displace(const Midpoint& fill, const Bend& bend, const Noise& noise,
+                       std::optional<double> root_m) {
   return with_threads(fill.run.threads, [&] {
     Pyramid pyramid(fill);
     pyramid.sample();
-    return pyramid.displace(bend, noise, root_m);
+    return pyramid.displace(bend, noise, root_m, fill.run);
   });
 }
 
 Dem carry_up_by_levels(const Midpoint& fill, const Pull& pull) {
   return with_threads(fill.run.threads, [&] {
     Pyramid pyramid(fill);
-    pyramid.carry_up(pull);
+    pyramid.carry_up(pull, fill.run);
     return pyramid.known_cells();
   });
 }
 
 Raster<float> carry_up_and_displace(const Midpoint& fill, const Pull& pull, const Bend& bend,
-                                    const Noise& noise, double root_m) {
+                                    const Noise& noise) {
   return with_threads(fill.run.threads, [&] {
     Pyramid pyramid(fill);
-    pyramid.carry_up(pull);
-    return pyramid.displace(bend, noise, root_m);
+    pyramid.carry_up(pull, fill.run.part(0, 0.5));
+    return pyramid.displace(bend, noise, {}, fill.run.part(0.5, 1));
   });
 }
 

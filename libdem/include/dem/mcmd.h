@@ -47,7 +47,8 @@ std::vector<Field> fields(McmdOptions& options);
 /// Method:   [belhadj2007] algorithm 1 and equations 1 to 3. Departures: lattice of any size; the
 ///           default order, weights and subdivision (see McmdOptions); centres take both diagonals.
 /// Needs:    at least one known cell.
-/// Gives:    a raster of the same size, all finite; known cells bit for bit.
+/// Gives:    a raster of the same size, all finite; known cells bit for bit. A corner that nothing
+///           rises to takes the mean of the other corners.
 /// Exact on: constants, when I = I_bu = 0 and rs = 0. Not exact on planes.
 /// Cost:     O(cells); 5 bytes a cell beside the input (waves: 9), output included. Any number of
 ///           threads gives the same bits.

@@ -37,13 +37,15 @@ class Raster {
   T& operator()(int col, int row) { return cells_[index(col, row)]; }
   const T& operator()(int col, int row) const { return cells_[index(col, row)]; }
 
-  std::span<T> row(int r) { return {cells_.data() + index(0, r), std::size_t(size_.cols)}; }
-  std::span<const T> row(int r) const {
+  // Views of the cells. They live no longer than the raster, so a temporary has none.
+  std::span<T> row(int r) & { return {cells_.data() + index(0, r), std::size_t(size_.cols)}; }
+  std::span<const T> row(int r) const& {
     return {cells_.data() + index(0, r), std::size_t(size_.cols)};
   }
-
-  std::span<T> cells() { return cells_; }
-  std::span<const T> cells() const { return cells_; }
+  std::span<T> row(int r) && = delete;
+  std::span<T> cells() & { return cells_; }
+  std::span<const T> cells() const& { return cells_; }
+  std::span<T> cells() && = delete;
 
   bool operator==(const Raster&) const = default;
 
