@@ -13,12 +13,12 @@ namespace dem {
 /// Errors of elevation, got - truth, in metres, over a set of cells.
 struct Errors {
   std::size_t cells = 0;
-  double rmse_m = 0;  ///< root of the mean square
-  double mae_m = 0;   ///< mean of |e|
-  double bias_m = 0;  ///< mean of e
-  double nmad_m = 0;  ///< 1.4826 * median |e - median e|
-  double le90_m = 0;  ///< 90 % of |e| are not larger (nearest rank)
-  double max_m = 0;   ///< largest |e|
+  double rmse_m = 0;          ///< root of the mean square
+  double mae_m = 0;           ///< mean of |e|
+  double bias_m = 0;          ///< mean of e
+  double nmad_m = 0;          ///< 1.4826 * median |e - median e|
+  double le90_m = 0;          ///< 90 % of |e| are not larger (nearest rank)
+  double max_m = 0;           ///< largest |e|
   double slope_rmse_deg = 0;  ///< of Horn's slope, over cells with eight neighbours; NaN: none
 };
 
