@@ -13,9 +13,8 @@ std::vector<Field> fields(NearestOptions& options);
 
 /// Gives every unknown cell the elevation of the nearest known cell, in metres (dem.spacing), exact
 /// Euclidean; of equally near ones the smaller elevation wins: mirrored input, mirrored output.
-/// Method:   lower envelope of parabolas, along columns, then rows [felzenszwalb2012]; distances
-/// are
-///           whole numbers (metres times a power of two, squared), so that ties are exact.
+/// Method:   lower envelope of parabolas, along columns, then rows [felzenszwalb2012]. Squared
+///           distances are whole numbers (times a power of two), so that ties are exact.
 /// Cost:     O(cells); 8 bytes a cell, the result among them.
 /// Throws:   std::invalid_argument when no cell is known or the spacing is not > 0, Cancelled.
 Raster<float> fill_nearest(const Dem& dem, const NearestOptions& options = {}, const Run& run = {});
