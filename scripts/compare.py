@@ -224,7 +224,8 @@ def picture(rows, title):
     def py(y):
         return place(y, y_range, height - bottom, -(height - top - bottom))
 
-    out = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" font-family="sans-serif" font-size="12">',
+    out = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" '
+           'font-family="sans-serif" font-size="12">',
            '<rect width="100%" height="100%" fill="white"/>', f'<text x="{left}" y="24" font-size="15">{title}</text>']
     for x in ticks(*x_range):
         out.append(f'<path d="M{px(x):.1f} {top}V{height - bottom}" stroke="#ddd"/>'
