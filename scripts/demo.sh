@@ -21,7 +21,3 @@ if [[ ! -f "$tile" ]]; then
   tile=testdata/jacksboro.tif
 fi
 build/demo/apps/dem/dem reproduce mount-washington "$out" --tile "$tile" --overwrite
-
-echo
-echo "Pictures:"
-find "$out" -type f \( -name '*.png' -o -name '*.svg' \) | sort
