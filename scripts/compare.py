@@ -40,7 +40,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[1]
 
 # name: (program that must be there, commands before, the command that is timed, commands after).
 # Each runs in a folder of its own and leaves filled.tif. {in}: raster with holes, {points}: x y z as
-# doubles, {csv}: the same as text, {radius}: of the largest hole, {aspect}: cell width / height.
+# doubles, {vrt}: the same as text, {radius}: of the largest hole, {aspect}: cell width / height.
 GRASS = "grass loc/PERMANENT --exec "
 GMT = "gmt surface {points} -bi3d -R0/{last_col}/0/{last_row} -I1 -T0 -Gfilled.nc"
 NC_TO_TIF = ["gdal_translate -q filled.nc filled.tif"]
@@ -51,8 +51,7 @@ OTHERS = {
     "gdal_fillnodata": ("gdal_fillnodata.py", [], "gdal_fillnodata.py -q -md {radius} -si 0 {in} filled.tif", []),
     "gdal_grid linear": ("gdal_grid", [],
         "gdal_grid -q -txe 0 {cols} -tye {rows} 0 -outsize {cols} {rows} -ot Float32 -of GTiff "
-        "-a linear:radius=-1:nodata=-9999 -oo X_POSSIBLE_NAMES=x -oo Y_POSSIBLE_NAMES=y -oo Z_POSSIBLE_NAMES=z "
-        "-zfield z -l points {csv} filled.tif", []),
+        "-a linear:radius=-1:nodata=-9999 -l points {vrt} filled.tif", []),
     "gmt surface -T0": ("gmt", [], GMT, NC_TO_TIF),
     "gmt surface -T0 -A": ("gmt", [], GMT + " -A{aspect}", NC_TO_TIF),
     "grass r.fillnulls rst": ("grass", GRASS_IN, GRASS + "r.fillnulls input=dem output=filled method=rst", GRASS_OUT),
@@ -123,8 +122,12 @@ def describe_problem(z, folder, aspect):
     points = numpy.column_stack([col, rows - 1 - row, z[row, col]])
     points.tofile(folder / "points.bin")
     numpy.savetxt(folder / "points.csv", points + [0.5, 0.5, 0], "%.10g", ",", header="x,y,z", comments="")
+    (folder / "points.vrt").write_text(
+        '<OGRVRTDataSource><OGRVRTLayer name="points"><SrcDataSource relativeToVRT="1">points.csv</SrcDataSource>'
+        '<GeometryType>wkbPoint25D</GeometryType><GeometryField encoding="PointFromColumns" x="x" y="y" z="z"/>'
+        '</OGRVRTLayer></OGRVRTDataSource>', encoding="utf-8")
     write(folder / "in.tif", z)
-    return {"in": folder / "in.tif", "points": folder / "points.bin", "csv": folder / "points.csv", "cols": cols,
+    return {"in": folder / "in.tif", "points": folder / "points.bin", "vrt": folder / "points.vrt", "cols": cols,
             "rows": rows, "last_col": cols - 1, "last_row": rows - 1, "aspect": f"{aspect:.6f}",
             "radius": math.ceil(largest_hole_radius(~numpy.isnan(z))) + 10}
 
