@@ -21,7 +21,7 @@ LAYERS = {
 
 # An algorithm that is written in several private files. They belong to it alone.
 PARTS = {
-    "mcmd": ["lattice", "midpoint", "pyramid", "waves"],
+    "mcmd": ["lattice", "midpoint", "pyramid", "row_kernels", "waves"],
     "spline": ["grid", "multigrid", "spline_solver", "springs"],
 }
 
