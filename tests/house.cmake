@@ -1,0 +1,28 @@
+# Tests of the house around the code: format, layers, and that others can use what is installed.
+# They do not depend on compiler or build type, so one build runs them (label `house`).
+find_package(Python3 REQUIRED COMPONENTS Interpreter)
+
+add_test(NAME house.format COMMAND ${PROJECT_SOURCE_DIR}/scripts/check_format.sh)
+add_test(NAME house.layers
+         COMMAND Python3::Interpreter ${PROJECT_SOURCE_DIR}/scripts/check_layers.py)
+add_test(NAME house.layers_check_finds_planted_violations
+         COMMAND Python3::Interpreter ${PROJECT_SOURCE_DIR}/scripts/check_layers.py --self-test)
+
+# The consumer's own folder is build/.../tests/consumer*, so nothing outside the build is touched.
+add_test(NAME house.consumer_without_gis
+         COMMAND ${CMAKE_COMMAND} -DSOURCE=${PROJECT_SOURCE_DIR}
+                 -DBUILD=${CMAKE_CURRENT_BINARY_DIR}/consumer_without_gis/libdem
+                 -DWORK=${CMAKE_CURRENT_BINARY_DIR}/consumer_without_gis/work
+                 -DCONSUMER=${CMAKE_CURRENT_SOURCE_DIR}/consumer -DIO=OFF
+                 -P ${CMAKE_CURRENT_SOURCE_DIR}/consumer/run.cmake)
+set(house_tests house.format house.layers house.layers_check_finds_planted_violations
+    house.consumer_without_gis)
+if(DEM_BUILD_IO AND NOT DEM_SANITIZE)
+  add_test(NAME house.consumer
+           COMMAND ${CMAKE_COMMAND} -DBUILD=${PROJECT_BINARY_DIR}
+                   -DWORK=${CMAKE_CURRENT_BINARY_DIR}/consumer
+                   -DCONSUMER=${CMAKE_CURRENT_SOURCE_DIR}/consumer -DIO=ON
+                   -P ${CMAKE_CURRENT_SOURCE_DIR}/consumer/run.cmake)
+  list(APPEND house_tests house.consumer)
+endif()
+set_tests_properties(${house_tests} PROPERTIES LABELS house TIMEOUT 600)
