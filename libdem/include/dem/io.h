@@ -56,7 +56,7 @@ struct HeightRange {
 struct ReadOptions {
   int band = 0;                  ///< 1, 2, ...; 0: the only one, else an error names the bands
   std::optional<double> nodata;  ///< this value means unknown; overrides what is declared
-  bool detect_nodata = true;     ///< look for undeclared sentinels -32768, -9999, 32767
+  bool detect_nodata = true;     ///< look for undeclared -32768, -32767, -9999, 32767
   std::string tile;              ///< "N36E008" for an .hgt whose name does not say
   std::optional<HeightRange> heights;  ///< read as a heightmap image, through OpenImageIO
   std::optional<double>
@@ -82,7 +82,10 @@ struct WriteOptions {
   std::optional<double> nodata;  ///< default: the source's, else one that no elevation has
   bool compress = true;          ///< GeoTIFF, COG: DEFLATE with predictor, tiled
   bool overwrite = false;        ///< an existing file is refused otherwise
-  std::optional<HeightRange> heights;  ///< for images; default: lowest to highest elevation
+  /// For images. Default: that of the source if all elevations lie in it, else lowest to highest;
+  /// .exr: plain metres.
+  std::optional<HeightRange> heights;
+  std::optional<double> unknown_grey;  ///< for images; default: alpha 0 marks unknown cells
   std::vector<std::pair<std::string, std::string>> metadata;  ///< added to the source's
 };
 
