@@ -92,10 +92,10 @@ class Io : public ::testing::Test {
     std::string format = "GTiff";
     GDALDataType type = GDT_Float32;
     int cols = 3, rows = 2, bands = 1;
-    std::vector<double> cells;
-    std::optional<double> nodata;
+    std::vector<double> cells{};
+    std::optional<double> nodata{};
     std::vector<double> transform{500000, 30, 0, 4600000, 0, -20};
-    std::function<void(GDALDatasetH)> more;
+    std::function<void(GDALDatasetH)> more{};
   };
   std::string make(const std::string& name, const Plan& plan) const {
     GDALAllRegister();
@@ -103,11 +103,12 @@ class Io : public ::testing::Test {
                                            plan.bands, plan.type, nullptr);
     if (!plan.transform.empty())
       GDALSetGeoTransform(memory, const_cast<double*>(plan.transform.data()));
-    if (!plan.cells.empty())
+    if (!plan.cells.empty()) {
       EXPECT_EQ(GDALRasterIO(GDALGetRasterBand(memory, 1), GF_Write, 0, 0, plan.cols, plan.rows,
                              const_cast<double*>(plan.cells.data()), plan.cols, plan.rows,
                              GDT_Float64, 0, 0),
                 CE_None);
+    }
     if (plan.nodata) GDALSetRasterNoDataValue(GDALGetRasterBand(memory, 1), *plan.nodata);
     if (plan.more) plan.more(memory);
     const GDALDatasetH file =
@@ -179,9 +180,9 @@ TEST_P(HgtSize, ComesBackByteForByteInEveryWrapping) {
     EXPECT_EQ(again.dem.known, plain.dem.known) << name;
     EXPECT_EQ(again.dem.ref, plain.dem.ref) << name;
     write_dem(at("again.hgt"), again.dem, again.source, {.overwrite = true});
-    EXPECT_EQ(bytes_of(at("again.hgt")), bytes) << name;
+    EXPECT_TRUE(bytes_of(at("again.hgt")) == bytes) << name;
   }
-  EXPECT_EQ(bytes_of(at("out/N36E008.hgt")), bytes);
+  EXPECT_TRUE(bytes_of(at("out/N36E008.hgt")) == bytes);
 }
 
 INSTANTIATE_TEST_SUITE_P(AnySquare, HgtSize, ::testing::Values(2, 3, 7, 1201));
@@ -230,9 +231,10 @@ TEST_F(Io, HgtIsFoundByAnyUsualNameOrByTile) {
 
 TEST_F(Io, ZippedHgtMayHaveAnyNameInside) {
   put(at("inner.bin.hgt"), hgt_bytes(7));
-  const auto zip = [&](const std::string& name, const std::vector<std::string>& entries) {
+  const auto zip = [&](const std::string& name, const std::vector<std::string>& entries) -> void {
     for (const auto& entry : entries) {
-      VSILFILE* f = VSIFOpenL(("/vsizip/" + at(name) + "/" + entry).c_str(), "ab");
+      VSILFILE* f = VSIFOpenL(("/vsizip/" + at(name) + "/" + entry).c_str(), "wb");
+      ASSERT_NE(f, nullptr);
       VSIFWriteL(hgt_bytes(7).data(), 1, 98, f);
       VSIFCloseL(f);
     }
@@ -258,8 +260,8 @@ TEST_F(Io, WrongHgtIsToldInOneLineWithWhatItIs) {
     return message;
   };
   EXPECT_THAT(error(""), HasSubstr("is empty (0 bytes)"));
-  EXPECT_THAT(error(hgt_bytes(1201).substr(0, 2880000)),
-              AllOf(HasSubstr("has 2880000 bytes"), HasSubstr("2884802 for 1201 x 1201")));
+  EXPECT_THAT(error(hgt_bytes(1201).substr(0, 2880002)),
+              AllOf(HasSubstr("has 2880002 bytes"), HasSubstr("2884802 for 1201 x 1201")));
   EXPECT_THAT(error(hgt_bytes(7).substr(0, 97)), HasSubstr("98 for 7 x 7"));
   EXPECT_THAT(error("x"), HasSubstr("looks like text: x"));
   EXPECT_THAT(error("{\"error\":\n \"no such tile\"}"),
@@ -347,7 +349,7 @@ TEST_F(Io, RealTileComesBackByteForByte) {
   const DemFile file = read_dem(path);
   EXPECT_EQ(file.dem.size().cells() - count(file.dem.known), 103743u);
   write_dem(at("N46E008.hgt"), file.dem, file.source);
-  EXPECT_EQ(bytes_of(at("N46E008.hgt")), bytes_of(path));
+  EXPECT_TRUE(bytes_of(at("N46E008.hgt")) == bytes_of(path));
 }
 
 // --- Through GDAL: reading
@@ -582,7 +584,7 @@ TEST_P(WriteAs, KeepsTypeMaskPlaceAndWords) {
     const std::string path = at(format + ".tif");
     write_dem(path, dem, source, {.format = format, .metadata = {{"FILLED", "yes"}}});
     const DemFile file = read_dem(path);
-    EXPECT_EQ(file.dem.z, dem.z) << format;
+    EXPECT_TRUE(file.dem.z == dem.z) << format;
     EXPECT_EQ(file.dem.known, dem.known) << format;
     EXPECT_EQ(file.dem.ref, dem.ref) << format;
     EXPECT_EQ(file.source.type, GetParam()) << format;
@@ -607,7 +609,7 @@ TEST_F(Io, AsciiGridTakesItsSidecarsAlong) {
   write_dem(at("a.asc"), dem);
   EXPECT_THAT(files(), Contains("a.prj"));
   const DemFile file = read_dem(at("a.asc"));
-  EXPECT_EQ(file.dem.z, dem.z);
+  EXPECT_TRUE(file.dem.z == dem.z);
   EXPECT_EQ(file.dem.known, dem.known);
   EXPECT_EQ(file.dem.ref.to_world, dem.ref.to_world);
   EXPECT_TRUE(file.source.nodata.has_value());
@@ -692,7 +694,7 @@ TEST_F(Io, GeoTiffIsTiledAndDeflated) {
 TEST_F(Io, ThreadsDoNotChangeTheFile) {
   write_dem(at("1.tif"), large_dem(), {}, {}, {.threads = 1, .progress = {}});
   write_dem(at("3.tif"), large_dem(), {}, {}, {.threads = 3, .progress = {}});
-  EXPECT_EQ(bytes_of(at("1.tif")), bytes_of(at("3.tif")));
+  EXPECT_TRUE(bytes_of(at("1.tif")) == bytes_of(at("3.tif")));
 }
 
 TEST_F(Io, FormatsThatCannotBeAreRefused) {
@@ -836,7 +838,7 @@ TEST_F(Io, FullDiskIsOneErrorAndLeavesWhatWasThere) {
     int status = 0;
     waitpid(child, &status, 0);
     EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << name;
-    EXPECT_EQ(bytes_of(path), before) << name;
+    EXPECT_TRUE(bytes_of(path) == before) << name;
     EXPECT_THAT(files(), ::testing::ElementsAre("N36E008.hgt")) << name;
   }
 }
@@ -894,7 +896,7 @@ TEST_F(Io, ExrHoldsMetresExactly) {
   const Dem dem = small_dem();
   write_dem(at("a.exr"), dem);
   const DemFile file = read_dem(at("a.exr"));
-  EXPECT_EQ(file.dem.z, dem.z);
+  EXPECT_TRUE(file.dem.z == dem.z);
   EXPECT_EQ(file.dem.known, dem.known);
   EXPECT_EQ(file.source.type, CellType::float32);
 }

@@ -21,23 +21,6 @@ namespace {
 
 constexpr int kRowsAtOnce = 256;
 
-/// Sets one of GDAL's configuration options for this thread while it lives.
-class ThreadOption {
- public:
-  ThreadOption(const char* key, const std::string& value) : key_(key) {
-    const char* before = CPLGetThreadLocalConfigOption(key, nullptr);
-    if (before) before_ = before;
-    CPLSetThreadLocalConfigOption(key, value.c_str());
-  }
-  ~ThreadOption() { CPLSetThreadLocalConfigOption(key_, before_ ? before_->c_str() : nullptr); }
-  ThreadOption(const ThreadOption&) = delete;
-  ThreadOption& operator=(const ThreadOption&) = delete;
-
- private:
-  const char* key_;
-  std::optional<std::string> before_;
-};
-
 std::string text_or_empty(const char* text) { return text ? text : ""; }
 
 // --- Reading: which band, of what type ---------------------------------------------------------
@@ -293,7 +276,6 @@ void turn_north_up(DemFile& file) {
 
 DemFile read_gdal(const std::string& path, const ReadOptions& options, const Run& run) {
   GdalErrors errors;
-  const ThreadOption threads("GDAL_NUM_THREADS", gdal_threads(run));
   const DatasetPtr dataset(GDALOpenEx(path.c_str(),
                                       GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR,
                                       nullptr, nullptr, nullptr));

@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "nodata.h"
@@ -214,21 +212,15 @@ double grey_of(double height, const std::optional<HeightRange>& range, const Lev
 }
 
 template <class T>
-void write_pixels(const std::string& path, const Dem& dem, const Levels& levels,
-                  const std::optional<HeightRange>& range, const WriteOptions& options,
-                  const Run& run) {
+void write_greys(const std::string& path, const Dem& dem, const Levels& levels,
+                 const std::optional<HeightRange>& range, const WriteOptions& options,
+                 const Run& run) {
   const auto z = dem.z.cells();
   const auto known = dem.known.cells();
   const bool holes = std::ranges::count(known, 0) > 0;
   const bool with_alpha = holes && !options.unknown_grey;
   std::optional<double> unknown = options.unknown_grey;
   if (unknown && levels.integer()) unknown = std::round(*unknown * levels.top);
-
-  StagedFile staged(path, options.overwrite);
-  const auto output = OIIO::ImageOutput::create(staged.path());
-  if (!output) throw IoError(path, one_line(OIIO::geterror()));
-  if (with_alpha && !output->supports("alpha"))
-    throw IoError(path, "this format has no alpha for unknown cells; give --unknown-grey");
 
   const int channels = with_alpha ? 2 : 1;
   std::vector<T> pixels(z.size() * std::size_t(channels));
@@ -245,16 +237,7 @@ void write_pixels(const std::string& path, const Dem& dem, const Levels& levels,
   spec["oiio:UnassociatedAlpha"] = 1;
   if (range)
     spec["ImageDescription"] = fmt::format("{}={} {}", kRangeKey, range->low_m, range->high_m);
-  OiioProgress progress(run, "writing");
-  errno = 0;
-  const bool whole =
-      output->open(staged.path(), spec) &&
-      output->write_image(levels.oiio, pixels.data(), OIIO::AutoStride, OIIO::AutoStride,
-                          OIIO::AutoStride, OiioProgress::call, &progress);
-  const bool closed = output->close();
-  progress.rethrow();
-  if (!whole || !closed) throw IoError(path, one_line(output->geterror()));
-  staged.commit();
+  write_pixels(path, spec, pixels.data(), options.overwrite, run);
 }
 
 }  // namespace
@@ -269,11 +252,11 @@ void write_heightmap(const std::string& path, const Dem& dem, const Source& sour
   const Levels levels = output_levels(path, source, options);
   const auto range = output_range(path, levels, dem, source, options);
   if (levels.type == CellType::uint8)
-    write_pixels<std::uint8_t>(path, dem, levels, range, options, run);
+    write_greys<std::uint8_t>(path, dem, levels, range, options, run);
   else if (levels.type == CellType::uint16)
-    write_pixels<std::uint16_t>(path, dem, levels, range, options, run);
+    write_greys<std::uint16_t>(path, dem, levels, range, options, run);
   else
-    write_pixels<float>(path, dem, levels, range, options, run);
+    write_greys<float>(path, dem, levels, range, options, run);
 }
 
 }  // namespace dem

@@ -1,10 +1,7 @@
 #include "dem/image.h"
 
-#include <fmt/format.h>
-
 #include "dem/io.h"
 #include "oiio_support.h"
-#include "staged_file.h"
 
 namespace dem {
 namespace {
@@ -12,15 +9,8 @@ namespace {
 void write_bytes(const std::string& path, Size size, int channels, const void* bytes,
                  bool overwrite) {
   if (size.cells() == 0) throw IoError(path, "a picture of no pixels cannot be written");
-  StagedFile staged(path, overwrite);
-  const auto output = OIIO::ImageOutput::create(staged.path());
-  if (!output) throw IoError(path, one_line(OIIO::geterror()));
   const OIIO::ImageSpec spec(size.cols, size.rows, channels, OIIO::TypeDesc::UINT8);
-  const bool whole =
-      output->open(staged.path(), spec) && output->write_image(OIIO::TypeDesc::UINT8, bytes);
-  const bool closed = output->close();
-  if (!whole || !closed) throw IoError(path, one_line(output->geterror()));
-  staged.commit();
+  write_pixels(path, spec, bytes, overwrite, {});
 }
 
 }  // namespace

@@ -1,9 +1,8 @@
 #pragma once
-// OpenImageIO's progress as this library has it. Private to dem::io.
+// OpenImageIO's progress, messages and writing as this library has them. Private to dem::io.
 
 #include <OpenImageIO/imageio.h>
 
-#include <algorithm>
 #include <exception>
 #include <string>
 
@@ -17,18 +16,7 @@ class OiioProgress {
   OiioProgress(const Run& run, std::string what) : run_(run), what_(std::move(what)) {}
 
   /// Gives true to stop, as OpenImageIO wants it.
-  static bool call(void* self, float part) {
-    auto& progress = *static_cast<OiioProgress*>(self);
-    if (progress.error_) return true;
-    try {
-      progress.run_.report(part, progress.what_);
-      return false;
-    } catch (...) {
-      progress.error_ = std::current_exception();
-      return true;
-    }
-  }
-
+  static bool call(void* self, float part);
   void rethrow() const {
     if (error_) std::rethrow_exception(error_);
   }
@@ -40,9 +28,11 @@ class OiioProgress {
 };
 
 /// An OpenImageIO message on one line.
-inline std::string one_line(std::string message) {
-  std::ranges::replace(message, '\n', ' ');
-  return message;
-}
+std::string one_line(std::string message);
+
+/// Writes an image whole or not at all; `pixels` are of the type spec.format.
+/// Throws IoError, Cancelled.
+void write_pixels(const std::string& path, const OIIO::ImageSpec& spec, const void* pixels,
+                  bool overwrite, const Run& run);
 
 }  // namespace dem

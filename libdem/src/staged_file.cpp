@@ -25,8 +25,9 @@ StagedFile::StagedFile(const std::string& path, bool overwrite)
     : asked_(path), overwrite_(overwrite) {
   if (path.starts_with("/vsi")) throw IoError(path, "only plain files can be written");
   std::error_code error;
-  target_ = fs::is_symlink(path, error) ? fs::weakly_canonical(path, error) : fs::path(path);
-  if (error || target_.filename().empty()) throw IoError(path, "is not the name of a file");
+  const bool link = fs::is_symlink(path, error);  // an error here says: no such file, or no access
+  target_ = link ? fs::weakly_canonical(path, error) : fs::path(path);
+  if (target_.filename().empty()) throw IoError(path, "is not the name of a file");
 
   const fs::file_status status = fs::status(target_, error);
   if (fs::is_directory(status)) throw IoError(path, "is a folder");
