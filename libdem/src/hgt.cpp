@@ -96,7 +96,9 @@ std::string vsi_path(const std::string& path, bool writing) {
   const std::string name = lower(path);
   if (name.ends_with(".gz")) return name.starts_with("/vsigzip/") ? path : "/vsigzip/" + path;
   if (!name.ends_with(".zip")) return path;
-  const std::string zip = name.starts_with("/vsizip/") ? path : "/vsizip/" + path;
+  // In braces, or GDAL would look for the archive in the first folder with ".zip" in its name.
+  const std::string plain = name.starts_with("/vsizip/") ? path.substr(8) : path;
+  const std::string zip = fmt::format("/vsizip/{{{}}}", plain);
   if (!writing) return entry_of_zip(path, zip);
   const std::string base = base_name(path);
   return zip + "/" + base.substr(0, base.size() - 4);

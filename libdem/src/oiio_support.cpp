@@ -1,9 +1,12 @@
 #include "oiio_support.h"
 
+#include <OpenImageIO/filesystem.h>
+
 #include <algorithm>
 #include <vector>
 
 #include "dem/io.h"
+#include "gdal_support.h"
 #include "staged_file.h"
 
 namespace dem {
@@ -27,7 +30,7 @@ std::string one_line(std::string message) {
 
 namespace {
 
-/// Some of OpenImageIO's writers (PNG) do not notice that the disk is full: only reading tells.
+/// Whether an image can be read to its end: not every writer notices that the disk is full.
 bool is_whole(const std::string& path) {
   const auto input = OIIO::ImageInput::open(path);
   if (!input) return false;
@@ -45,6 +48,11 @@ void write_pixels(const std::string& path, const OIIO::ImageSpec& spec, const vo
   if (!output) throw IoError(path, one_line(OIIO::geterror()));
   if (spec.alpha_channel >= 0 && !output->supports("alpha"))
     throw IoError(path, "this format has no alpha for unknown cells; give --unknown-grey");
+
+  // Through memory where the format allows it, so that it is we who write, and see what fails.
+  OIIO::Filesystem::IOVecOutput memory;
+  const bool buffered = output->supports("ioproxy") && output->set_ioproxy(&memory);
+  const GdalErrors quiet;  // GDAL took libtiff's messages for itself
   OiioProgress progress(run, "writing");
   const bool written = output->open(staged.path(), spec) &&
                        output->write_image(spec.format, pixels, OIIO::AutoStride, OIIO::AutoStride,
@@ -52,7 +60,9 @@ void write_pixels(const std::string& path, const OIIO::ImageSpec& spec, const vo
   const bool closed = output->close();
   progress.rethrow();
   if (!written || !closed) throw IoError(path, one_line(output->geterror()));
-  if (!is_whole(staged.path()))
+  if (buffered)
+    staged.write({reinterpret_cast<const char*>(memory.buffer().data()), memory.buffer().size()});
+  else if (!is_whole(staged.path()))
     throw IoError(path, "cannot be written to the end; is the disk full?");
   staged.commit();
 }

@@ -52,6 +52,14 @@ StagedFile::~StagedFile() {
   fs::remove_all(folder_, ignored);
 }
 
+void StagedFile::write(std::span<const char> bytes) {
+  errno = 0;
+  std::ofstream out(path(), std::ios::binary);
+  out.write(bytes.data(), std::streamsize(bytes.size()));
+  out.close();
+  if (!out) throw IoError(asked_, fmt::format("cannot be written: {}", std::strerror(errno)));
+}
+
 void StagedFile::commit() {
   const fs::path name = target_.filename();
   const auto place = [&](const fs::path& file) { return target_.parent_path() / file; };
@@ -83,11 +91,7 @@ void check_writable(const std::string& path, bool overwrite) { StagedFile(path, 
 
 void write_text(const std::string& path, const std::string& text, bool overwrite) {
   StagedFile staged(path, overwrite);
-  errno = 0;
-  std::ofstream out(staged.path(), std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) throw IoError(path, fmt::format("cannot be written: {}", std::strerror(errno)));
+  staged.write(text);
   staged.commit();
 }
 

@@ -2,6 +2,7 @@
 // Files that appear whole or not at all. Private to dem::io.
 
 #include <filesystem>
+#include <span>
 #include <string>
 
 namespace dem {
@@ -22,6 +23,9 @@ class StagedFile {
 
   /// Where to write.
   std::string path() const { return (folder_ / target_.filename()).string(); }
+
+  /// Writes the whole file. Throws IoError.
+  void write(std::span<const char> bytes);
 
   /// Renames sidecars, then the file itself. Throws IoError.
   void commit();
