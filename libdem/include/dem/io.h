@@ -24,27 +24,27 @@ enum class CellType { int8, uint8, int16, uint16, int32, uint32, float32, float6
 
 /// One sign that cells hold no elevation, found while reading.
 struct NodataEvidence {
-  std::string what;  ///< "declared value -32768", "mask band", "NaN", "undeclared -9999", ...
+  std::string what{};  ///< "declared value -32768", "mask band", "NaN", "undeclared -9999", ...
   std::uint64_t cells = 0;  ///< how many cells show it
   bool used = false;        ///< whether they were taken as unknown
-  std::string why;          ///< the reason, in a few words
+  std::string why{};        ///< the reason, in a few words
 };
 
 /// What a file says beyond its heights; write_dem carries it over to the output.
 struct Source {
-  std::string path;
-  std::string format;  ///< "HGT", GDAL's short driver name ("GTiff"), or "image"
+  std::string path{};
+  std::string format{};  ///< "HGT", GDAL's short driver name ("GTiff"), or "image"
   CellType type = CellType::float32;
-  std::optional<double> nodata;  ///< the value that stood for "unknown", if a value did
+  std::optional<double> nodata{};  ///< the value that stood for "unknown", if a value did
   bool node_registered = false;  ///< cells are samples at nodes, shared between tiles (as in .hgt)
-  std::string vertical_datum;    ///< as far as the file or the format says, else ""
-  std::string band_description;
-  std::vector<std::pair<std::string, std::string>> metadata;
-  std::vector<NodataEvidence> evidence;
+  std::string vertical_datum{};  ///< as far as the file or the format says, else ""
+  std::string band_description{};
+  std::vector<std::pair<std::string, std::string>> metadata{};
+  std::vector<NodataEvidence> evidence{};
 
   /// The original values, kept only when float32 cannot hold each of them (float64, int32): so that
   /// known cells are written back bit for bit.
-  Raster<double> exact;
+  Raster<double> exact{};
 };
 
 /// Heights between two grey levels of an image: black = low_m, white = high_m.
@@ -54,13 +54,13 @@ struct HeightRange {
 };
 
 struct ReadOptions {
-  int band = 0;                  ///< 1, 2, ...; 0: the only one, else an error names the bands
-  std::optional<double> nodata;  ///< this value means unknown; overrides what is declared
-  bool detect_nodata = true;     ///< look for undeclared sentinels -32768, -9999, 32767
-  std::string tile;              ///< "N36E008" for an .hgt whose name does not say
-  std::optional<HeightRange> heights;  ///< read as a heightmap image, through OpenImageIO
-  std::optional<double>
-      unknown_grey;  ///< grey of an image that means unknown, 0 (black) to 1 (white)
+  int band = 0;                    ///< 1, 2, ...; 0: the only one, else an error names the bands
+  std::optional<double> nodata{};  ///< this value means unknown; overrides what is declared
+  bool detect_nodata = true;       ///< look for undeclared -32768, -32767, -9999, 32767
+  std::string tile{};              ///< "N36E008" for an .hgt whose name does not say
+  std::optional<HeightRange> heights{};  ///< read as a heightmap image, through OpenImageIO
+  /// Grey of an image that means unknown, 0 (black) to 1 (white).
+  std::optional<double> unknown_grey{};
 };
 
 struct DemFile {
@@ -77,13 +77,16 @@ struct DemFile {
 DemFile read_dem(const std::string& path, const ReadOptions& options = {}, const Run& run = {});
 
 struct WriteOptions {
-  std::string format;            ///< GDAL driver name, "HGT" or "image"; "": from the extension
-  std::optional<CellType> type;  ///< default: that of the source
-  std::optional<double> nodata;  ///< default: the source's, else one that no elevation has
-  bool compress = true;          ///< GeoTIFF, COG: DEFLATE with predictor, tiled
-  bool overwrite = false;        ///< an existing file is refused otherwise
-  std::optional<HeightRange> heights;  ///< for images; default: lowest to highest elevation
-  std::vector<std::pair<std::string, std::string>> metadata;  ///< added to the source's
+  std::string format{};            ///< GDAL driver name, "HGT" or "image"; "": from the extension
+  std::optional<CellType> type{};  ///< default: that of the source
+  std::optional<double> nodata{};  ///< default: the source's, else one that no elevation has
+  bool compress = true;            ///< GeoTIFF, COG: DEFLATE with predictor, tiled
+  bool overwrite = false;          ///< an existing file is refused otherwise
+  /// For images. Default: that of the source if all elevations lie in it, else lowest to highest;
+  /// .exr: plain metres.
+  std::optional<HeightRange> heights{};
+  std::optional<double> unknown_grey{};  ///< for images; default: alpha 0 marks unknown cells
+  std::vector<std::pair<std::string, std::string>> metadata{};  ///< added to the source's
 };
 
 /// Writes a DEM so that the path holds either what it held before or the whole new file: it is

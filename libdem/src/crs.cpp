@@ -1,0 +1,49 @@
+#include "crs.h"
+
+#include <fmt/format.h>
+#include <ogr_spatialref.h>
+
+#include <numbers>
+#include <stdexcept>
+
+#include "gdal_support.h"
+
+namespace dem {
+namespace {
+
+CrsUnits parse(const std::string& wkt) {
+  const GdalErrors quiet;
+  OGRSpatialReference crs;
+  if (crs.importFromWkt(wkt.c_str()) != OGRERR_NONE)
+    throw std::invalid_argument(
+        fmt::format("crs_wkt = {}...; must be a coordinate system in WKT", wkt.substr(0, 40)));
+  CrsUnits units;
+  units.geographic = crs.IsGeographic() != 0;
+  if (units.geographic) {
+    units.unit = crs.GetAngularUnits() * 180 / std::numbers::pi;
+    units.equatorial_radius_m = crs.GetSemiMajor();
+    const double inverse = crs.GetInvFlattening();
+    units.flattening = inverse == 0 ? 0 : 1 / inverse;
+  } else {
+    units.unit = crs.GetLinearUnits();
+  }
+  // Degrees come back as 1.0000000000000x from radians.
+  if (units.geographic && std::abs(units.unit - 1) < 1e-12) units.unit = 1;
+  return units;
+}
+
+}  // namespace
+
+CrsUnits crs_units(const std::string& wkt) {
+  if (wkt.empty()) return {};
+  // Parsing takes a thousand times as long as the length of a cell, and the text seldom changes.
+  thread_local std::string last_wkt;
+  thread_local CrsUnits last;
+  if (wkt != last_wkt) {
+    last = parse(wkt);
+    last_wkt = wkt;
+  }
+  return last;
+}
+
+}  // namespace dem

@@ -1,0 +1,14 @@
+#pragma once
+// Heights as the grey levels of an image, through OpenImageIO. Private to dem::io.
+
+#include <string>
+
+#include "dem/io.h"
+
+namespace dem {
+
+DemFile read_heightmap(const std::string& path, const ReadOptions& options, const Run& run);
+void write_heightmap(const std::string& path, const Dem& dem, const Source& source,
+                     const WriteOptions& options, const Run& run);
+
+}  // namespace dem

@@ -1,0 +1,38 @@
+#pragma once
+// OpenImageIO's progress, messages and writing as this library has them. Private to dem::io.
+
+#include <OpenImageIO/imageio.h>
+
+#include <exception>
+#include <string>
+
+#include "dem/run.h"
+
+namespace dem {
+
+/// Hands OpenImageIO's progress to a Run and brings its exceptions back.
+class OiioProgress {
+ public:
+  OiioProgress(const Run& run, std::string what) : run_(run), what_(std::move(what)) {}
+
+  /// Gives true to stop, as OpenImageIO wants it.
+  static bool call(void* self, float part);
+  void rethrow() const {
+    if (error_) std::rethrow_exception(error_);
+  }
+
+ private:
+  const Run& run_;
+  std::string what_;
+  std::exception_ptr error_;
+};
+
+/// An OpenImageIO message on one line.
+std::string one_line(std::string message);
+
+/// Writes an image whole or not at all; `pixels` are of the type spec.format.
+/// Throws IoError, Cancelled.
+void write_pixels(const std::string& path, const OIIO::ImageSpec& spec, const void* pixels,
+                  bool overwrite, const Run& run);
+
+}  // namespace dem
