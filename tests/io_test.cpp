@@ -818,7 +818,8 @@ TEST_F(Io, FullDiskIsOneErrorAndLeavesWhatWasThere) {
   std::vector<std::pair<std::string, std::string>> outputs;
   outputs = {{"a.tif", ""}, {"cog.tif", "COG"}, {"a.asc", ""},         {"a.png", ""},
              {"a.exr", ""}, {"raw.bil", ""},    {"N36E008.hgt", "HGT"}};
-  for (const auto& [name, format] : outputs) {
+  for (const auto& output : outputs) {
+    const std::string name = output.first, format = output.second;
     const bool hgt = format == "HGT";
     const std::string path = at(name), before = bytes_of(path);
     // A file system that takes files up to 100 kB, in a process of its own.

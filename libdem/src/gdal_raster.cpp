@@ -8,8 +8,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <set>
-#include <variant>
 
 #include "cells.h"
 #include "gdal_support.h"

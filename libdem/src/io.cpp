@@ -18,8 +18,8 @@ bool is_image_name(const std::string& path) {
   return ext == ".png" || ext == ".exr" || ext == ".jpg" || ext == ".jpeg";
 }
 
-/// A plain path that is not there, or a folder, said before any driver guesses at it.
-void check_readable(const std::string& path) {
+/// An empty file is told as such before any format guesses at it.
+void check_not_empty(const std::string& path) {
   namespace fs = std::filesystem;
   if (path.starts_with("/vsi")) return;
   std::error_code error;
@@ -36,7 +36,7 @@ DemFile read_dem(const std::string& path, const ReadOptions& options, const Run&
     throw IoError(path, "is an .hgt, whose heights are metres; it takes no grey levels");
   if (!hgt && !options.tile.empty())
     throw IoError(path, fmt::format("is no .hgt; --tile {} has no meaning for it", options.tile));
-  check_readable(path);
+  check_not_empty(path);
 
   DemFile file = hgt                           ? read_hgt(path, options, run)
                  : grey || is_image_name(path) ? read_heightmap(path, options, run)
