@@ -40,12 +40,13 @@ int curve(const Options& o, Shell& shell) {
 
 void add_curve(CLI::App& app, Shell& shell) {
   const auto o = std::make_shared<Options>();
-  auto* verb =
-      add_verb(app, shell, "curve", "Error and time of each method at each rate; table, CSV, SVG",
-               "  dem curve whole.tif results\n"
-               "  dem curve whole.tif results --methods mcmd,mcmd:paper,idw --rates 50,10,3.4,1\n"
-               "  dem curve N44W072.hgt results --repeats 1 --overwrite",
-               [o, &shell] { return curve(*o, shell); });
+  auto* verb = add_verb(
+      app, shell, "curve", "Error and time of each method at each rate; table, CSV, SVG",
+      "  dem curve whole.tif results\n"
+      "  dem curve whole.tif results --methods mcmd,mcmd:paper,idw --rates 50,10,3.4,1\n"
+      "  dem curve N44W072.hgt results --repeats 1 --overwrite\n" +
+          fmt::format("Rates: {}, when none are given", fmt::join(o->curve.percents, ", ")),
+      [o, &shell] { return curve(*o, shell); });
   verb->add_option("TRUTH", o->truth, "a DEM, as whole as can be")->required()->type_name("");
   verb->add_option("DIR", o->dir, "folder for curves.csv, curves.json, curves.svg")
       ->required()
@@ -57,7 +58,7 @@ void add_curve(CLI::App& app, Shell& shell) {
   verb->add_option("-r,--rates", o->curve.percents, "percent of the cells that are kept")
       ->delimiter(',')
       ->allow_extra_args(false)
-      ->type_name("99,...,1");
+      ->type_name("P,P,P");
   verb->add_option("--repeats", o->curve.repeats, "runs of each; the median time counts")
       ->check(CLI::Range(1, 1000).description(""))
       ->type_name("N")

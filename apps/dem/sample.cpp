@@ -19,6 +19,7 @@ struct Options {
   double contours = 0;
   std::uint64_t seed = 1;
   ReadOptions read;
+  std::vector<CLI::Option*> ways;  // of which one is to be given
 };
 
 struct Sampled {
@@ -31,8 +32,13 @@ std::size_t cells_of(double share, std::size_t known) {
   return std::max<std::size_t>(1, std::size_t(std::llround(share * double(known))));
 }
 
-/// Percentages are checked before the file is read.
+/// Before the file is read: one way of sampling, and percentages that are some.
 void check_options(const Options& o) {
+  if (std::ranges::count_if(o.ways, [](const CLI::Option* way) { return way->count() > 0; }) != 1)
+    throw std::invalid_argument(
+        "exactly one of --keep, --count, --every, --edges, --voids, --tracks, --contours is needed "
+        "(see `dem "
+        "sample --help`)");
   for (const auto& [name, text] :
        {std::pair{"keep", o.keep}, {"edges", o.edges}, {"voids", o.voids}})
     if (!text.empty()) parse_share(name, text);
@@ -101,26 +107,18 @@ void add_sample(CLI::App& app, Shell& shell) {
                [o, &shell] { return run_sample(*o, shell); });
   verb->add_option("IN", o->in, "a DEM, as whole as can be")->required()->type_name("");
   verb->add_option("OUT", o->out, "the same with fewer known cells")->required()->type_name("");
-  auto* how =
-      verb->add_option_group("How", "exactly one of these; percentages are of the known cells");
-  how->add_option("--keep", o->keep, "keep this share, at random")->type_name("P%");
-  how->add_option("--count", o->count, "keep this many cells, at random")
-      ->check(CLI::PositiveNumber.description(""))
-      ->type_name("N");
-  how->add_option("--every", o->every, "keep every N-th column and row")
-      ->check(CLI::PositiveNumber.description(""))
-      ->type_name("N");
-  how->add_option("--edges", o->edges, "keep this share, where Sobel's gradient is strongest")
-      ->type_name("P%");
-  how->add_option("--voids", o->voids, "cut ragged voids until this share is gone")
-      ->type_name("P%");
-  how->add_option("--tracks", o->tracks, "keep N straight tracks, as a ship's or a satellite's")
-      ->check(CLI::PositiveNumber.description(""))
-      ->type_name("N");
-  how->add_option("--contours", o->contours, "keep contour lines this many metres apart")
-      ->check(CLI::PositiveNumber.description(""))
-      ->type_name("METRES");
-  how->require_option(1);
+  const auto way = [&](const char* name, auto& value, const char* type, const char* doc) {
+    return verb->add_option(name, value, doc)->type_name(type)->group("How (exactly one)");
+  };
+  const auto positive = CLI::PositiveNumber.description("");
+  o->ways = {
+      way("--keep", o->keep, "P%", "keep this share of the known cells, at random"),
+      way("--count", o->count, "N", "keep this many cells, at random")->check(positive),
+      way("--every", o->every, "N", "keep every N-th column and row")->check(positive),
+      way("--edges", o->edges, "P%", "keep this share, where Sobel's gradient is strongest"),
+      way("--voids", o->voids, "P%", "cut ragged voids until this share is gone"),
+      way("--tracks", o->tracks, "N", "keep N straight tracks, as a ship's")->check(positive),
+      way("--contours", o->contours, "METRES", "keep contour lines so far apart")->check(positive)};
   verb->add_option("--seed", o->seed, "another seed, other cells; the same on every machine")
       ->type_name("N")
       ->capture_default_str();
