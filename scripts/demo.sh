@@ -20,4 +20,5 @@ if [[ ! -f "$tile" ]]; then
   echo "demo: there is no $tile; running on testdata/jacksboro.tif"
   tile=testdata/jacksboro.tif
 fi
+mkdir -p "$(dirname "$out")"
 build/demo/apps/dem/dem reproduce mount-washington "$out" --tile "$tile" --overwrite

@@ -36,8 +36,9 @@ def picture(folder):
     for name in ("sampled.png", "mcmd_default.png", "truth.png"):
         grey = gdal.Open(str(folder / name)).ReadAsArray()
         rgb = grey if grey.ndim == 3 else numpy.stack([grey] * 3)
-        top, left = (rgb.shape[1] - SIDE) // 2, (rgb.shape[2] - SIDE) // 2
-        panels += [rgb[:, top:top + SIDE, left:left + SIDE], numpy.full((3, SIDE, 6), 255, numpy.uint8)]
+        side = min(SIDE, *rgb.shape[1:])
+        top, left = (rgb.shape[1] - side) // 2, (rgb.shape[2] - side) // 2
+        panels += [rgb[:, top:top + side, left:left + side], numpy.full((3, side, 6), 255, numpy.uint8)]
     strip = numpy.concatenate(panels[:-1], axis=2)
     raster = gdal.GetDriverByName("MEM").Create("", strip.shape[2], strip.shape[1], 3, gdal.GDT_Byte)
     raster.WriteArray(strip)

@@ -18,5 +18,6 @@ fi
 scripts/setup.sh
 cmake --preset release -B build/demo -DDEM_BUILD_TESTS=OFF -DDEM_BUILD_BENCH=OFF
 cmake --build build/demo
+mkdir -p out
 build/demo/apps/dem/dem reproduce mount-washington out/figures --tile "$tile" --threads 1 --overwrite
 /usr/bin/python3 scripts/figures.py out/figures

@@ -61,6 +61,9 @@ FillMethod make_method(std::string name, std::string summary, std::string citati
 /// The methods of this library. dem/baselines.h (target dem::io) has those of GDAL and OpenImageIO.
 const std::vector<FillMethod>& fill_methods();
 
+/// The method that fills when none is named.
+std::string_view default_fill_method();
+
 /// A method with its preset's settings put before the caller's.
 struct ChosenMethod {
   const FillMethod* method = nullptr;

@@ -1,0 +1,102 @@
+#pragma once
+// What every verb shares: options, progress, messages, exit codes, numbers written as text.
+
+#include <fmt/format.h>
+
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "dem/dem.h"
+#include "dem/io.h"
+#include "dem/run.h"
+#include "progress.h"
+
+namespace CLI {
+class App;
+}
+
+namespace dem::app {
+
+using Json = nlohmann::ordered_json;
+
+enum Exit { kDone = 0, kUsage = 1, kFile = 2, kUnfilled = 3, kCheckFailed = 4, kInterrupted = 5 };
+
+/// The options that every verb takes, and what they govern.
+class Shell {
+ public:
+  bool json = false, quiet = false, overwrite = false;
+  int threads = 0;
+  std::string progress = "auto";
+  std::function<int()> verb;  ///< what the command line chose
+
+  /// Adds the shared options to a verb.
+  void add_options(CLI::App& app);
+
+  /// Threads and progress as asked for; a stop signal cancels whatever runs with it.
+  Run run();
+
+  /// A message for a person, on stderr; silent with --quiet.
+  template <class... Args>
+  void say(fmt::format_string<Args...> format, Args&&... args) {
+    if (!quiet) message(fmt::format(format, std::forward<Args>(args)...));
+  }
+
+  void clear_bar() { bar_.clear(); }
+
+  /// Results, on stdout: `text` for a person, or the object with --json.
+  void print(const Json& object, std::string_view text);
+
+ private:
+  void message(const std::string& line);
+
+  Progress bar_;
+};
+
+/// A verb with the shared options; `work` runs once the command line is whole.
+CLI::App* add_verb(CLI::App& app, Shell& shell, const std::string& name, const std::string& summary,
+                   const std::string& examples, std::function<int()> work);
+
+/// Options of verbs that read a DEM: --band, --tile, --nodata, --no-detect, --height-range ...
+void add_read_options(CLI::App& app, ReadOptions& options);
+
+/// "key=value"; throws std::invalid_argument.
+std::pair<std::string, std::string> parse_setting(const std::string& text);
+
+/// "3.4%" -> 0.034, in (0, 1]; throws std::invalid_argument that names the option.
+double parse_share(std::string_view option, const std::string& text);
+
+/// Throws std::invalid_argument `option = text; must be ...`.
+double parse_number(std::string_view option, const std::string& text, std::string_view must_be);
+
+/// 1050625 -> "1 050 625".
+std::string grouped(std::size_t n);
+
+/// `cells` of `all`, in percent.
+std::string percent_of(std::size_t cells, std::size_t all);
+
+/// Cells known in `whole` and unknown in `sampled`.
+Mask removed_cells(const Dem& whole, const Dem& sampled);
+
+/// The heights of `dem`, and those of `other` where it is unknown: for slopes beside voids.
+Raster<float> completed(const Dem& dem, const Raster<float>& other);
+
+/// A folder for results. Made if it is not there; taken away again if nothing was written in it.
+class OutputFolder {
+ public:
+  explicit OutputFolder(const std::string& path);
+  ~OutputFolder();
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+
+  std::string file(std::string_view name) const;
+
+ private:
+  std::string path_;
+  bool made_ = false;
+};
+
+}  // namespace dem::app

@@ -1,0 +1,72 @@
+// dem curve: error and time of every method against the share of cells kept.
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+
+#include "experiment.h"
+#include "verbs.h"
+
+namespace dem::app {
+namespace {
+
+struct Options {
+  std::string truth, dir;
+  CurveOptions curve;
+  ReadOptions read;
+};
+
+int curve(const Options& o, Shell& shell) {
+  check(o.curve);
+  const OutputFolder folder(o.dir);
+  for (const char* name : kCurveFiles) check_writable(folder.file(name), shell.overwrite);
+
+  const Run run = shell.run();
+  const DemFile file = read_dem(o.truth, o.read, run.part(0, 0.02));
+  if (count(file.dem.known) < 2)
+    throw IoError(o.truth, "fewer than two known cells; nothing to remove");
+  const auto scores = measure_curve(file.dem, o.curve, run.part(0.02, 1));
+  const std::string title = "Filling " + std::filesystem::path(o.truth).filename().string();
+  Json json = write_curve(folder, title, file.dem, o.curve, scores, shell.overwrite);
+
+  json["files"] = Json::array();
+  for (const char* name : kCurveFiles) json["files"].push_back(folder.file(name));
+  shell.print(json, curve_table(scores));
+  shell.say("wrote {}, {}, {}", folder.file("curves.csv"), folder.file("curves.json"),
+            folder.file("curves.svg"));
+  return kDone;
+}
+
+}  // namespace
+
+void add_curve(CLI::App& app, Shell& shell) {
+  const auto o = std::make_shared<Options>();
+  auto* verb = add_verb(
+      app, shell, "curve", "Error and time of each method at each rate; table, CSV, SVG",
+      "  dem curve whole.tif results\n"
+      "  dem curve whole.tif results --methods mcmd,mcmd:paper,idw --rates 50,10,3.4,1\n"
+      "  dem curve N44W072.hgt results --repeats 1 --overwrite\n" +
+          fmt::format("Rates: {}, when none are given", fmt::join(o->curve.percents, ", ")),
+      [o, &shell] { return curve(*o, shell); });
+  verb->add_option("TRUTH", o->truth, "a DEM, as whole as can be")->required()->type_name("");
+  verb->add_option("DIR", o->dir, "folder for curves.csv, curves.json, curves.svg")
+      ->required()
+      ->type_name("");
+  verb->add_option("-m,--methods", o->curve.methods, "names, by commas; all, when left out")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("A,B,C");
+  verb->add_option("-r,--rates", o->curve.percents, "percent of the cells that are kept")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("P,P,P");
+  verb->add_option("--repeats", o->curve.repeats, "runs of each; the median time counts")
+      ->check(CLI::Range(1, 1000).description(""))
+      ->type_name("N")
+      ->capture_default_str();
+  verb->add_option("--seed", o->curve.seed, "of the cells that are kept")
+      ->type_name("N")
+      ->capture_default_str();
+  add_read_options(*verb, o->read);
+}
+
+}  // namespace dem::app

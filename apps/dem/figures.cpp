@@ -1,0 +1,237 @@
+// The parameter pictures of [belhadj2007] (figures 2, 3, 5, 6, 8) and the comparison of MD, MDI and
+// both of [belhadj2005] (figures 3, 5, 6).
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "chart.h"
+#include "dem/image.h"
+#include "reproduce.h"
+
+namespace dem::app {
+namespace {
+
+constexpr int kSide = 513, kMiddle = kSide / 2;
+constexpr float kHigh = 0.3F * kSide, kMedium = kHigh / 2;  // the papers do not state a scale
+
+using Picture = Raster<std::uint8_t>;
+
+Dem blank(Size size = {kSide, kSide}) { return {Raster<float>(size), Mask(size), {}, {}}; }
+
+void put(Dem& dem, int col, int row, float height) {
+  if (!dem.z.contains(col, row)) return;
+  dem.z(col, row) = height;
+  dem.known(col, row) = 1;
+}
+
+struct Point {
+  double x, y, height;
+};
+
+/// Lines through the points, heights in proportion between them.
+void put_line(Dem& dem, const std::vector<Point>& points) {
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const Point a = points[i - 1], b = points[i];
+    const int steps =
+        std::max(1, int(std::ceil(std::max(std::abs(b.x - a.x), std::abs(b.y - a.y)))));
+    for (int s = 0; s <= steps; ++s) {
+      const double t = s / double(steps);
+      put(dem, int(std::lround(std::lerp(a.x, b.x, t))), int(std::lround(std::lerp(a.y, b.y, t))),
+          float(std::lerp(a.height, b.height, t)));
+    }
+  }
+}
+
+/// Corners medium, centre high: figures 2 and 3.
+Dem five_points() {
+  Dem dem = blank();
+  for (int col : {0, kSide - 1})
+    for (int row : {0, kSide - 1}) put(dem, col, row, kMedium);
+  put(dem, kMiddle, kMiddle, kHigh);
+  return dem;
+}
+
+/// A circle at the highest and four segments on the diagonals at a medium elevation; the segment
+/// at the bottom left is shifted by one cell to the left: figures 5 and 8.
+Dem circle_and_segments() {
+  Dem dem = blank();
+  const double radius = kSide * 0.22;
+  for (int step = 0; step < 4000; ++step) {
+    const double angle = step * 2 * std::numbers::pi / 4000;
+    put(dem, int(std::lround(kMiddle + radius * std::cos(angle))),
+        int(std::lround(kMiddle + radius * std::sin(angle))), kHigh);
+  }
+  const int from = kSide / 4, to = kSide * 7 / 16;  // distance from the centre, along each axis
+  for (int d = from; d <= to; ++d) {
+    put(dem, kMiddle + d, kMiddle - d, kMedium);
+    put(dem, kMiddle - d, kMiddle - d, kMedium);
+    put(dem, kMiddle + d, kMiddle + d, kMedium);
+    put(dem, kMiddle - d - 1, kMiddle + d, kMedium);
+  }
+  return dem;
+}
+
+/// A few ridges and the rivers between them, as the skeleton of [belhadj2005] has them.
+Dem skeleton() {
+  Dem dem = blank();
+  put_line(dem, {{40, 90, 30}, {110, 140, 90}, {190, 150, 140}, {270, 120, 110}, {350, 60, 40}});
+  put_line(dem,
+           {{190, 150, 140}, {230, 230, 105}, {300, 290, 120}, {390, 300, 80}, {470, 260, 30}});
+  put_line(dem, {{300, 290, 120}, {290, 380, 85}, {320, 470, 35}});
+  put_line(dem, {{110, 140, 90}, {80, 250, 60}, {100, 340, 25}});
+  put_line(dem, {{230, 250, 45}, {170, 300, 28}, {190, 400, 15}, {150, 512, 5}});
+  put_line(dem, {{130, 230, 40}, {170, 300, 28}});
+  put_line(dem, {{300, 240, 45}, {350, 190, 28}, {430, 170, 15}, {512, 120, 5}});
+  put_line(dem, {{290, 170, 50}, {350, 190, 28}});
+  put_line(dem, {{360, 340, 45}, {400, 410, 22}, {512, 450, 5}});
+  return dem;
+}
+
+Picture shaded(const Raster<float>& z) { return hillshade(z, {}); }
+
+/// Known heights alone as greys, high is dark as in the papers; unknown cells white.
+Picture greys(const Dem& dem) {
+  Picture picture(dem.size(), 255);
+  for (std::size_t i = 0; i < picture.cells().size(); ++i)
+    if (dem.known.cells()[i])
+      picture.cells()[i] =
+          std::uint8_t(std::clamp(200.0 - 200.0 * double(dem.z.cells()[i]) / kHigh, 0.0, 200.0));
+  return picture;
+}
+
+/// Pictures of one size beside each other, `across` to a row, with a white gutter.
+Picture sheet(const std::vector<Picture>& parts, int across) {
+  constexpr int gutter = 12;
+  const int n = int(parts.size()), down = (n + across - 1) / across;
+  Picture all({across * (kSide + gutter) - gutter, down * (kSide + gutter) - gutter}, 255);
+  for (int i = 0; i < n; ++i)
+    for (int r = 0; r < kSide; ++r)
+      std::ranges::copy(
+          parts[std::size_t(i)].row(r),
+          all.row(i / across * (kSide + gutter) + r).begin() + i % across * (kSide + gutter));
+  return all;
+}
+
+MdOptions md(Subdivision subdivision, double I, double H, double rt, double rs) {
+  return {.subdivision = subdivision, .I = I, .H = H, .rt = rt, .rs = rs};
+}
+
+McmdOptions mcmd(double I_bu, double I, double H = 0.5, double rt = 0, double rs = 0) {
+  McmdOptions options = mcmd_options("mcmd:paper");
+  options.I_bu = I_bu, options.I = I, options.H = H, options.rt = rt, options.rs = rs;
+  return options;
+}
+
+Picture figure2(const Run& run) {
+  const auto one = [&](Subdivision s, double rs) {
+    return shaded(fill_md(five_points(), md(s, 0, 0.5, 0, rs), run));
+  };
+  return sheet({one(Subdivision::triangle_edge, 0), one(Subdivision::triangle_edge, 0.25),
+                one(Subdivision::diamond_square, 0), one(Subdivision::diamond_square, 0.25)},
+               4);
+}
+
+Picture figure3(const Run& run) {
+  constexpr double sets[8][4] = {{-0.4, 0.5, 0, 0},     {-0.4, 0.5, 0, 0.25}, {-0.4, 0.5, -1, 0.25},
+                                 {0.4, 0.5, 0, 0},      {0.4, 0.4, 0, 0.15},  {0.4, 0.4, 1, 0.15},
+                                 {-2, 0.5, -0.9, 0.55}, {2, 0.5, -0.5, 0.6}};
+  std::vector<Picture> parts;
+  for (const auto& [I, H, rt, rs] : sets)
+    parts.push_back(
+        shaded(fill_md(five_points(), md(Subdivision::triangle_edge, I, H, rt, rs), run)));
+  return sheet(parts, 4);
+}
+
+Picture figure5(const Run& run) {
+  const Dem given = circle_and_segments();
+  const Raster<float> z = fill_md(given, md(Subdivision::triangle_edge, 0, 0.5, 0, 0), run);
+  return sheet({greys({z, Mask(z.size(), 1), {}, {}}), shaded(z)}, 2);
+}
+
+Picture figure8(const Run& run) {
+  const Dem given = circle_and_segments();
+  return sheet(
+      {greys(carry_up_mcmd(given, mcmd(6, 1), run)), shaded(fill_mcmd(given, mcmd(6, 1), run)),
+       shaded(fill_mcmd(given, mcmd(5, -0.7, 0.4, -1, 0.2), run))},
+      3);
+}
+
+Picture skeleton_figures(const Run& run) {
+  const Dem given = skeleton();
+  const MdOptions plain = md(Subdivision::triangle_edge, 0, 0.5, 0, 0.2);
+  MdiOptions both;
+  both.rs_bu = 0.2, both.rs = 0.2;
+  return sheet({greys(given), shaded(fill_md(given, plain, run)),
+                greys(carry_up_mdi(given, both, run)), shaded(fill_mdi(given, both, run))},
+               4);
+}
+
+/// Heights on a line of 257 cells, its ends unknown: figure 6 (and figure 4, which has the same).
+std::string figure6(const Run& run) {
+  Dem line = blank({257, 1});
+  for (const auto& [col, height] :
+       {std::pair{37, 55}, {75, 20}, {109, 62}, {141, 70}, {179, 30}, {221, 48}})
+    put(line, col, 0, float(height));
+  Series given{"given", {}, {}, false, true};
+  for (int c = 0; c < 257; ++c)
+    if (line.known(c, 0)) given.x.push_back(c), given.y.push_back(double(line.z(c, 0)));
+  const auto curve = [](const std::string& name, const Raster<float>& z) {
+    Series s{name, {}, {}, true, false};
+    for (int c = 0; c < z.cols(); ++c) s.x.push_back(c), s.y.push_back(double(z(c, 0)));
+    return s;
+  };
+  const auto panel = [&](const std::string& title, double rs) {
+    const Raster<float> alone = fill_md(line, md(Subdivision::triangle_edge, 0, 0.5, 0, rs), run);
+    const Raster<float> both = fill_mcmd(line, mcmd(0, 0, 0.5, 0, rs), run);
+    return Panel{
+        title, {"cell"}, {"elevation, m"}, {curve("MCMD", both), curve("MD alone", alone), given}};
+  };
+  return svg_chart("Figure 6: MCMD on a line (figure 4: MD alone)",
+                   "The points are given; the ends are not.",
+                   {panel("without noise", 0), panel("with noise in MD", 0.5)});
+}
+
+}  // namespace
+
+Findings reproduce_figures(const ReproduceOptions&, const OutputFolder& folder, Shell& shell) {
+  struct Figure {
+    const char* file;
+    const char* caption;
+    Picture (*make)(const Run&);
+  };
+  const Figure figures[] = {
+      {"figure2.png",
+       "2: triangle-edge without and with noise, diamond-square without and with noise", figure2},
+      {"figure3.png", "3 (a)-(d), (e)-(h): triangle-edge, the eight sets of I, H, rt, rs", figure3},
+      {"figure5.png", "5: triangle-edge MD alone, dark is high; as a hillshade", figure5},
+      {"figure8.png",
+       "8: (a) after MDBU, (b) I_bu 6, I 1, (d) I_bu 5, I -0.7, H 0.4, rt -1, rs 0.2", figure8},
+      {"belhadj2005.png", "belhadj2005 2, 3, 5, 6: skeleton, MD alone, MDI alone, both",
+       skeleton_figures}};
+  const std::string line = folder.file("figure6.svg");
+  for (const auto& figure : figures) check_writable(folder.file(figure.file), shell.overwrite);
+  check_writable(line, shell.overwrite);
+
+  Findings f;
+  const Run run = shell.run();
+  double done = 0;
+  for (const auto& figure : figures) {
+    const std::string path = folder.file(figure.file);
+    write_image(path, figure.make(run.part(done, done)), shell.overwrite);
+    run.report(done += 1.0 / 6, figure.file);
+    f.pictures.push_back(path);
+    f.notes.push_back(fmt::format("figure {}", figure.caption));
+  }
+  write_text(line, figure6(run.part(done, 1)), shell.overwrite);
+  f.pictures.push_back(line);
+  f.notes.push_back("figure 6: MCMD on a line, beside MD alone (figure 4)");
+  f.notes.push_back(
+      fmt::format("Scale: the papers state none; here {0} x {0} cells of 1 m, high = {1:.0f} m, "
+                  "medium = {2:.0f} m. "
+                  "[belhadj2005]'s skeleton is drawn by hand.",
+                  kSide, kHigh, kMedium));
+  return f;
+}
+
+}  // namespace dem::app

@@ -1,0 +1,16 @@
+#pragma once
+// One function per verb, each in a file of its own: it adds the verb to the command line.
+
+#include "common.h"
+
+namespace dem::app {
+
+void add_info(CLI::App& app, Shell& shell);
+void add_sample(CLI::App& app, Shell& shell);
+void add_fill(CLI::App& app, Shell& shell);
+void add_evaluate(CLI::App& app, Shell& shell);
+void add_curve(CLI::App& app, Shell& shell);
+void add_reproduce(CLI::App& app, Shell& shell);
+void add_methods(CLI::App& app, Shell& shell);
+
+}  // namespace dem::app
