@@ -81,8 +81,6 @@ struct Level {
   Raster<float> z, weight;  // empty at level 0, which is the DEM
 };
 
-constexpr float known_weight = -1;
-
 // ---- Weights and kernels
 
 /// Distances in cells to a node's neighbours on its four sides; 0: there is none.
@@ -212,7 +210,6 @@ class Pyramid {
   void sum_weights(Desk& desk, int y, const Rows& known, Take take) const;
 
   void finish_young(Level& level, const Run& run);
-  static void settle(Level& level, int x, int y, float sum, float weight);
   void coarsen(const Level& level, Level& next, const Run& run);
   void coarsen_row(Desk& desk, Level& next, int next_y) const;
 
@@ -395,9 +392,10 @@ void Pyramid::carry_up(const Pull& pull, const Run& whole) {
     if (k + 1 < levels_.size()) coarsen(levels_[k], levels_[k + 1], run);
   }
   Level& roots = levels_.back();
-  if (!finest(roots))
-    for (int y = 0; y < roots.y.n; ++y)
-      for (int x = 0; x < roots.x.n; ++x) settle(roots, x, y, 0, 0);
+  const std::array<std::int32_t, 2> all{-1, -1};
+  for (int y = 0; y < roots.z.rows(); ++y)
+    settle_row(all.data(), 0, zeros_.data(), zeros_.data(), roots.x.n, roots.z.row(y).data(),
+               roots.weight.row(y).data());
 }
 
 void Pyramid::sample() {
@@ -405,22 +403,17 @@ void Pyramid::sample() {
     coarsen(levels_[k], levels_[k + 1], fill_.run.part(0, 0));
 }
 
-/// Makes a reached node known: its own sums and those given become its mean.
-void Pyramid::settle(Level& level, int x, int y, float sum, float weight) {
-  float& z = level.z(x, y);
-  float& w = level.weight(x, y);
-  if (w < 0 || w + weight <= 0) return;
-  z = (z + sum) / (w + weight);
-  w = known_weight;
-}
-
 /// The young nodes of a coarser level: edges from what their children gave, then centres from that
 /// and, in diamond-square, from their own four edges.
 void Pyramid::finish_young(Level& level, const Run& run) {
-  in_row_blocks(level, level.y.n, "bottom-up", run, [&](Desk&, int begin, int end) {
+  const auto settle = [&](Desk& desk, int y, std::int32_t other, const float* sum,
+                          const float* weight) {
+    settle_row(desk.young.data(), other, sum, weight, level.x.n, level.z.row(y).data(),
+               level.weight.row(y).data());
+  };
+  in_row_blocks(level, level.y.n, "bottom-up", run, [&](Desk& desk, int begin, int end) {
     for (int y = begin; y < end; ++y)
-      for (int x = level.y.young(y) ? 0 : 1; x < level.x.n; ++x)
-        if (level.x.young(x) != level.y.young(y)) settle(level, x, y, 0, 0);
+      settle(desk, y, level.y.young(y) ? -1 : 0, zeros_.data(), zeros_.data());
   });
   in_row_blocks(level, level.y.n, "bottom-up", run, [&](Desk& desk, int begin, int end) {
     for (int y = begin | 1; y < end && level.y.young(y); y += 2) {
@@ -430,8 +423,7 @@ void Pyramid::finish_young(Level& level, const Run& run) {
                     Take::sides, false);
         sum_weights(desk, y, {up.known.data(), here.known.data(), down.known.data()}, Take::sides);
       }
-      for (int x = 1; x < level.x.last(); x += 2)
-        settle(level, x, y, desk.sum[std::size_t(x)], desk.weight[std::size_t(x)]);
+      settle(desk, y, 0, desk.sum.data(), desk.weight.data());
     }
   });
 }
@@ -460,19 +452,22 @@ void Pyramid::coarsen_row(Desk& desk, Level& next, int next_y) const {
                 false);
     sum_weights(desk, y, {row(up, &Slot::known), here->known.data(), row(down, &Slot::known)},
                 Take::both);
+  } else {
+    std::ranges::fill(desk.sum, 0.f);
+    std::ranges::fill(desk.weight, 0.f);
   }
   float* z = next.z.row(next_y).data();
   float* weight = next.weight.row(next_y).data();
   const float* own_z = finest(level) ? zeros_.data() : level.z.row(y).data();
   const float* own_weight = finest(level) ? zeros_.data() : level.weight.row(y).data();
-  const auto take = [&](int next_x, int x) {
-    const std::size_t i = std::size_t(x);
-    const std::int32_t known = -std::int32_t(here->known[i] != 0);
-    z[next_x] = choose(known, here->height[i], own_z[x] + desk.sum[i]);
-    weight[next_x] = choose(known, known_weight, own_weight[x] + desk.weight[i]);
-  };
-  for (int next_x = 0; next_x < next.x.last(); ++next_x) take(next_x, 2 * next_x);
-  take(next.x.last(), level.x.last());
+  add_own(here->height.data(), here->known.data(), own_z, own_weight, level.x.n, desk.sum.data(),
+          desk.weight.data());
+  for (int next_x = 0; next_x < next.x.last(); ++next_x) {
+    z[next_x] = desk.sum[std::size_t(2 * next_x)];
+    weight[next_x] = desk.weight[std::size_t(2 * next_x)];
+  }
+  z[next.x.last()] = desk.sum.back();
+  weight[next.x.last()] = desk.weight.back();
 }
 
 // ---- Top-down

@@ -1,7 +1,6 @@
 #include "row_kernels.h"
 
 #include <algorithm>
-#include <array>
 #include <limits>
 
 // Function versions are chosen before the sanitizers' run time is up, so they do without.
@@ -116,22 +115,50 @@ DEM_VECTORISED void store_known(const float* z_row, const std::uint8_t* known_ro
   }
 }
 
-DEM_VECTORISED float lowest_of_known(const float* z, const std::uint8_t* known, int n) {
-  constexpr int lanes = 16;  // independent minima, taken side by side
-  constexpr float inf = std::numeric_limits<float>::infinity();
-  float lowest[lanes];
-  for (float& least : lowest) least = inf;
-  const int whole = n - n % lanes;
-  for (int x = 0; x < whole; x += lanes)
-    for (int lane = 0; lane < lanes; ++lane) {
-      const float height = choose(mask_of(known[x + lane] != 0), z[x + lane], inf);
-      lowest[lane] = height < lowest[lane] ? height : lowest[lane];
-    }
-  for (int x = whole; x < n; ++x) {
-    const float height = choose(mask_of(known[x] != 0), z[x], inf);
-    lowest[0] = height < lowest[0] ? height : lowest[0];
+DEM_VECTORISED void settle_row(const std::int32_t* young_row, std::int32_t other,
+                               const float* sum_row, const float* more_row, int n, float* z_row,
+                               float* weight_row) {
+  const std::int32_t* __restrict young = young_row;
+  const float* __restrict sum = sum_row;
+  const float* __restrict more = more_row;
+  float* __restrict z = z_row;
+  float* __restrict weight = weight_row;
+  for (int x = 0; x < n; ++x) {
+    const float total = weight[x] + more[x];
+    const std::int32_t take = (young[x] ^ other) & mask_of(weight[x] >= 0) & mask_of(total > 0);
+    z[x] = choose(take, (z[x] + sum[x]) / choose(take, total, 1.0f), z[x]);
+    weight[x] = choose(take, settled, weight[x]);
   }
-  return *std::min_element(lowest, lowest + lanes);
+}
+
+DEM_VECTORISED void add_own(const float* height_row, const float* known_row, const float* own_row,
+                            const float* own_weight_row, int n, float* sum_row, float* weight_row) {
+  const float* __restrict height = height_row;
+  const float* __restrict known = known_row;
+  const float* __restrict own = own_row;
+  const float* __restrict own_weight = own_weight_row;
+  float* __restrict sum = sum_row;
+  float* __restrict weight = weight_row;
+  for (int x = 0; x < n; ++x) {
+    const std::int32_t is_known = mask_of(known[x] != 0);
+    sum[x] = choose(is_known, height[x], own[x] + sum[x]);
+    weight[x] = choose(is_known, settled, own_weight[x] + weight[x]);
+  }
+}
+
+// Floats are compared as integers that are in the same order: the compiler takes those side by side.
+DEM_VECTORISED float lowest_of_known(const float* z_row, const std::uint8_t* known_row, int n) {
+  const float* __restrict z = z_row;
+  const std::uint8_t* __restrict known = known_row;
+  const auto ordered = [](std::int32_t bits) { return bits ^ ((bits >> 31) & 0x7fffffff); };
+  const std::int32_t none = std::bit_cast<std::int32_t>(std::numeric_limits<float>::infinity());
+  std::int32_t least = none;
+  for (int x = 0; x < n; ++x) {
+    const std::int32_t is_known = mask_of(known[x] != 0);
+    const std::int32_t height = ordered(std::bit_cast<std::int32_t>(z[x]));
+    least = std::min(least, (height & is_known) | (none & ~is_known));
+  }
+  return std::bit_cast<float>(ordered(least));
 }
 
 }  // namespace dem

@@ -51,6 +51,18 @@ void store_known(const float* z, const std::uint8_t* known, float reference,
                  const std::int32_t* young, std::int32_t other, const float* sum, const float* here,
                  int n, float* to);
 
+/// The weight of a node that is known.
+constexpr float settled = -1;
+
+/// Where young ^ other is set, nodes that are not settled and have weight become
+/// (z + sum) / (weight + more), and settled.
+void settle_row(const std::int32_t* young, std::int32_t other, const float* sum, const float* more,
+                int n, float* z, float* weight);
+
+/// Where known, sum becomes the height and weight `settled`; elsewhere their own are added to both.
+void add_own(const float* height, const float* known, const float* own, const float* own_weight,
+             int n, float* sum, float* weight);
+
 /// The least z where known is set; infinity when it is nowhere.
 float lowest_of_known(const float* z, const std::uint8_t* known, int n);
 
