@@ -72,19 +72,43 @@ Dem circle_and_segments() {
   return dem;
 }
 
-/// A few ridges and the rivers between them, as the skeleton of [belhadj2005] has them.
+/// A line and its side branches, a pair every 30 cells: `rise` metres a cell away from the line.
+void put_branched(Dem& dem, const std::vector<Point>& points, double rise) {
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const Point a = points[i - 1], b = points[i];
+    const double length = std::hypot(b.x - a.x, b.y - a.y);
+    const double along_x = (b.x - a.x) / length, along_y = (b.y - a.y) / length;
+    for (double at = 12; at < length; at += 30)
+      for (double side : {-1.0, 1.0}) {
+        const double reach = 28 + 9 * std::sin(at + 2 * side);  // uneven, as nature is
+        const Point foot{a.x + at * along_x, a.y + at * along_y,
+                         std::lerp(a.height, b.height, at / length)};
+        put_line(dem, {foot,
+                       {foot.x + reach * (0.5 * along_x - side * along_y),
+                        foot.y + reach * (0.5 * along_y + side * along_x),
+                        std::max(2.0, foot.height + rise * reach)}});
+      }
+  }
+  put_line(dem, points);
+}
+
+/// A few ridges, falling to their sides, and rivers between them, rising to theirs: a skeleton as
+/// [belhadj2005] grows it from particles.
 Dem skeleton() {
+  constexpr double ridge = -0.9, river = 0.5;
   Dem dem = blank();
-  put_line(dem, {{40, 90, 30}, {110, 140, 90}, {190, 150, 140}, {270, 120, 110}, {350, 60, 40}});
-  put_line(dem,
-           {{190, 150, 140}, {230, 230, 105}, {300, 290, 120}, {390, 300, 80}, {470, 260, 30}});
-  put_line(dem, {{300, 290, 120}, {290, 380, 85}, {320, 470, 35}});
-  put_line(dem, {{110, 140, 90}, {80, 250, 60}, {100, 340, 25}});
-  put_line(dem, {{230, 250, 45}, {170, 300, 28}, {190, 400, 15}, {150, 512, 5}});
-  put_line(dem, {{130, 230, 40}, {170, 300, 28}});
-  put_line(dem, {{300, 240, 45}, {350, 190, 28}, {430, 170, 15}, {512, 120, 5}});
-  put_line(dem, {{290, 170, 50}, {350, 190, 28}});
-  put_line(dem, {{360, 340, 45}, {400, 410, 22}, {512, 450, 5}});
+  put_branched(dem, {{40, 90, 40}, {110, 140, 90}, {190, 150, 140}, {270, 120, 110}, {350, 60, 50}},
+               ridge);
+  put_branched(dem,
+               {{190, 150, 140}, {230, 230, 105}, {300, 290, 120}, {390, 300, 80}, {470, 260, 40}},
+               ridge);
+  put_branched(dem, {{300, 290, 120}, {290, 380, 85}, {320, 470, 45}}, ridge);
+  put_branched(dem, {{110, 140, 90}, {80, 250, 70}, {70, 350, 45}, {60, 460, 35}}, ridge);
+  put_branched(dem, {{240, 300, 45}, {200, 350, 28}, {190, 420, 15}, {170, 512, 5}}, river);
+  put_branched(dem, {{140, 220, 40}, {160, 300, 34}, {200, 350, 28}}, river);
+  put_branched(dem, {{290, 200, 45}, {360, 190, 28}, {430, 170, 15}, {512, 130, 5}}, river);
+  put_branched(dem, {{370, 380, 45}, {420, 430, 22}, {512, 460, 5}}, river);
+  put_branched(dem, {{130, 40, 25}, {200, 60, 15}, {250, 0, 5}}, river);
   return dem;
 }
 
@@ -159,9 +183,9 @@ Picture figure8(const Run& run) {
 
 Picture skeleton_figures(const Run& run) {
   const Dem given = skeleton();
-  const MdOptions plain = md(Subdivision::triangle_edge, 0, 0.5, 0, 0.2);
+  const MdOptions plain = md(Subdivision::triangle_edge, 0, 0.5, 0, 0.1);
   MdiOptions both;
-  both.rs_bu = 0.2, both.rs = 0.2;
+  both.rs_bu = 0.1, both.rs = 0.1;
   return sheet({greys(given), shaded(fill_md(given, plain, run)),
                 greys(carry_up_mdi(given, both, run)), shaded(fill_mdi(given, both, run))},
                4);
@@ -182,14 +206,14 @@ std::string figure6(const Run& run) {
     return s;
   };
   const auto panel = [&](const std::string& title, double rs) {
-    const Raster<float> alone = fill_md(line, md(Subdivision::triangle_edge, 0, 0.5, 0, rs), run);
-    const Raster<float> both = fill_mcmd(line, mcmd(0, 0, 0.5, 0, rs), run);
+    const Raster<float> alone = fill_md(line, md(Subdivision::triangle_edge, 0, 0.25, 0, rs), run);
+    const Raster<float> both = fill_mcmd(line, mcmd(0, 0, 0.25, 0, rs), run);
     return Panel{
         title, {"cell"}, {"elevation, m"}, {curve("MCMD", both), curve("MD alone", alone), given}};
   };
   return svg_chart("Figure 6: MCMD on a line (figure 4: MD alone)",
                    "The points are given; the ends are not.",
-                   {panel("without noise", 0), panel("with noise in MD", 0.5)});
+                   {panel("without noise", 0), panel("with noise in MD", 1)});
 }
 
 }  // namespace
