@@ -1,6 +1,8 @@
 #include "common.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -127,6 +129,13 @@ std::string grouped(std::size_t n) {
 
 std::string percent_of(std::size_t cells, std::size_t all) {
   return fmt::format("{:.3g} %", all == 0 ? 0.0 : 100.0 * double(cells) / double(all));
+}
+
+bool holds_metadata(const std::string& path, const std::string& format) {
+  if (!format.empty()) return format != "HGT";
+  std::string name = fs::path(path).filename().string();
+  std::ranges::transform(name, name.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  return !name.ends_with(".hgt") && !name.ends_with(".hgt.gz") && !name.ends_with(".hgt.zip");
 }
 
 Mask removed_cells(const Dem& whole, const Dem& sampled) {

@@ -78,6 +78,9 @@ std::string grouped(std::size_t n);
 /// `cells` of `all`, in percent.
 std::string percent_of(std::size_t cells, std::size_t all);
 
+/// Whether a file written so can say how it was made: an .hgt cannot.
+bool holds_metadata(const std::string& path, const std::string& format);
+
 /// Cells known in `whole` and unknown in `sampled`.
 Mask removed_cells(const Dem& whole, const Dem& sampled);
 

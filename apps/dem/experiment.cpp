@@ -74,8 +74,9 @@ std::string svg(const std::string& title, const Dem& truth, const CurveOptions& 
   return svg_chart(
       title,
       fmt::format("{} x {} cells, kept at random (seed {}), then filled; time is the median "
-                  "of {} runs.",
-                  truth.z.cols(), truth.z.rows(), options.seed, options.repeats),
+                  "of {} run{}.",
+                  truth.z.cols(), truth.z.rows(), options.seed, options.repeats,
+                  options.repeats == 1 ? "" : "s"),
       {error, time});
 }
 

@@ -3,90 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "chart.h"
 #include "dem/image.h"
 #include "reproduce.h"
+#include "sketches.h"
 
 namespace dem::app {
 namespace {
 
-constexpr int kSide = 513, kMiddle = kSide / 2;
-constexpr float kHigh = 0.3F * kSide, kMedium = kHigh / 2;  // the papers do not state a scale
-
 using Picture = Raster<std::uint8_t>;
-
-Dem blank(Size size = {kSide, kSide}) { return {Raster<float>(size), Mask(size), {}, {}}; }
-
-void put(Dem& dem, int col, int row, float height) {
-  if (!dem.z.contains(col, row)) return;
-  dem.z(col, row) = height;
-  dem.known(col, row) = 1;
-}
-
-struct Point {
-  double x, y, height;
-};
-
-/// Lines through the points, heights in proportion between them.
-void put_line(Dem& dem, const std::vector<Point>& points) {
-  for (std::size_t i = 1; i < points.size(); ++i) {
-    const Point a = points[i - 1], b = points[i];
-    const int steps =
-        std::max(1, int(std::ceil(std::max(std::abs(b.x - a.x), std::abs(b.y - a.y)))));
-    for (int s = 0; s <= steps; ++s) {
-      const double t = s / double(steps);
-      put(dem, int(std::lround(std::lerp(a.x, b.x, t))), int(std::lround(std::lerp(a.y, b.y, t))),
-          float(std::lerp(a.height, b.height, t)));
-    }
-  }
-}
-
-/// Corners medium, centre high: figures 2 and 3.
-Dem five_points() {
-  Dem dem = blank();
-  for (int col : {0, kSide - 1})
-    for (int row : {0, kSide - 1}) put(dem, col, row, kMedium);
-  put(dem, kMiddle, kMiddle, kHigh);
-  return dem;
-}
-
-/// A circle at the highest and four segments on the diagonals at a medium elevation; the segment
-/// at the bottom left is shifted by one cell to the left: figures 5 and 8.
-Dem circle_and_segments() {
-  Dem dem = blank();
-  const double radius = kSide * 0.22;
-  for (int step = 0; step < 4000; ++step) {
-    const double angle = step * 2 * std::numbers::pi / 4000;
-    put(dem, int(std::lround(kMiddle + radius * std::cos(angle))),
-        int(std::lround(kMiddle + radius * std::sin(angle))), kHigh);
-  }
-  const int from = kSide / 4, to = kSide * 7 / 16;  // distance from the centre, along each axis
-  for (int d = from; d <= to; ++d) {
-    put(dem, kMiddle + d, kMiddle - d, kMedium);
-    put(dem, kMiddle - d, kMiddle - d, kMedium);
-    put(dem, kMiddle + d, kMiddle + d, kMedium);
-    put(dem, kMiddle - d - 1, kMiddle + d, kMedium);
-  }
-  return dem;
-}
-
-/// A few ridges and the rivers between them, as the skeleton of [belhadj2005] has them.
-Dem skeleton() {
-  Dem dem = blank();
-  put_line(dem, {{40, 90, 30}, {110, 140, 90}, {190, 150, 140}, {270, 120, 110}, {350, 60, 40}});
-  put_line(dem,
-           {{190, 150, 140}, {230, 230, 105}, {300, 290, 120}, {390, 300, 80}, {470, 260, 30}});
-  put_line(dem, {{300, 290, 120}, {290, 380, 85}, {320, 470, 35}});
-  put_line(dem, {{110, 140, 90}, {80, 250, 60}, {100, 340, 25}});
-  put_line(dem, {{230, 250, 45}, {170, 300, 28}, {190, 400, 15}, {150, 512, 5}});
-  put_line(dem, {{130, 230, 40}, {170, 300, 28}});
-  put_line(dem, {{300, 240, 45}, {350, 190, 28}, {430, 170, 15}, {512, 120, 5}});
-  put_line(dem, {{290, 170, 50}, {350, 190, 28}});
-  put_line(dem, {{360, 340, 45}, {400, 410, 22}, {512, 450, 5}});
-  return dem;
-}
 
 Picture shaded(const Raster<float>& z) { return hillshade(z, {}); }
 
@@ -159,9 +85,9 @@ Picture figure8(const Run& run) {
 
 Picture skeleton_figures(const Run& run) {
   const Dem given = skeleton();
-  const MdOptions plain = md(Subdivision::triangle_edge, 0, 0.5, 0, 0.2);
+  const MdOptions plain = md(Subdivision::triangle_edge, 0, 0.5, 0, 0.1);
   MdiOptions both;
-  both.rs_bu = 0.2, both.rs = 0.2;
+  both.rs_bu = 0.1, both.rs = 0.1;
   return sheet({greys(given), shaded(fill_md(given, plain, run)),
                 greys(carry_up_mdi(given, both, run)), shaded(fill_mdi(given, both, run))},
                4);
@@ -182,14 +108,14 @@ std::string figure6(const Run& run) {
     return s;
   };
   const auto panel = [&](const std::string& title, double rs) {
-    const Raster<float> alone = fill_md(line, md(Subdivision::triangle_edge, 0, 0.5, 0, rs), run);
-    const Raster<float> both = fill_mcmd(line, mcmd(0, 0, 0.5, 0, rs), run);
+    const Raster<float> alone = fill_md(line, md(Subdivision::triangle_edge, 0, 0.25, 0, rs), run);
+    const Raster<float> both = fill_mcmd(line, mcmd(0, 0, 0.25, 0, rs), run);
     return Panel{
         title, {"cell"}, {"elevation, m"}, {curve("MCMD", both), curve("MD alone", alone), given}};
   };
   return svg_chart("Figure 6: MCMD on a line (figure 4: MD alone)",
                    "The points are given; the ends are not.",
-                   {panel("without noise", 0), panel("with noise in MD", 0.5)});
+                   {panel("without noise", 0), panel("with noise in MD", 1)});
 }
 
 }  // namespace

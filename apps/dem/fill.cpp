@@ -137,7 +137,7 @@ int fill(const Options& o, Shell& shell) {
 
   WriteOptions write = o.write;
   write.overwrite = shell.overwrite;
-  if (out.unknown > 0)
+  if (out.unknown > 0 && holds_metadata(o.out, o.write.format))
     write.metadata = {{"DEM_METHOD", o.method},
                       {"DEM_SETTINGS", settings_text(chosen.settings)},
                       {"DEM_VERSION", DEM_VERSION}};

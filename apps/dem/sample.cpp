@@ -80,7 +80,7 @@ int run_sample(const Options& o, Shell& shell) {
   if (o.contours > 0) source.exact = {};
   WriteOptions write;
   write.overwrite = shell.overwrite;
-  write.metadata = {{"DEM_SAMPLE", sampled.how}};
+  if (holds_metadata(o.out, "")) write.metadata = {{"DEM_SAMPLE", sampled.how}};
   write_dem(o.out, sampled.dem, source, write, run.part(0.6, 1));
 
   shell.say("kept {} of {} known cells ({}), {}: {}", grouped(after), grouped(before),

@@ -42,6 +42,15 @@ def vrt_text(types, size=4):
     return f'<VRTDataset rasterXSize="{size}" rasterYSize="{size}">{bands}</VRTDataset>'
 
 
+def raw_vrt_text(name, size):
+    """A square of little-endian floats in the file `name`."""
+    return (f'<VRTDataset rasterXSize="{size}" rasterYSize="{size}">'
+            '<VRTRasterBand dataType="Float32" band="1" subClass="VRTRawRasterBand">'
+            f'<SourceFilename relativeToVRT="1">{name}</SourceFilename>'
+            f'<ImageOffset>0</ImageOffset><PixelOffset>4</PixelOffset><LineOffset>{4 * size}</LineOffset>'
+            '<ByteOrder>LSB</ByteOrder></VRTRasterBand></VRTDataset>')
+
+
 def limit_file_size(limit):
     def limiter():
         resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
@@ -61,6 +70,10 @@ class CliTest(unittest.TestCase):
         with open(self.path(name), "wb") as file:
             file.write(content if isinstance(content, bytes) else content.encode())
         return self.path(name)
+
+    def read(self, name):
+        with open(self.path(name), "rb") as file:
+            return file.read()
 
     def hgt(self, name="N10E010.hgt", side=33, value=height):
         return self.write(name, hgt_bytes(side, value))

@@ -35,7 +35,7 @@ class BadFiles(CliTest):
         self.refused("a.tif", "not a raster")
 
     def test_complex_raster_is_refused(self):
-        self.refused("a.vrt", vrt_text(["CFloat32"]), "complex")
+        self.refused("a.vrt", vrt_text(["CFloat32"]), "real numbers")
 
     def test_raster_of_several_bands_needs_band(self):
         self.refused("a.vrt", vrt_text(["Float32", "Float32"]), "band")

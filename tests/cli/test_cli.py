@@ -1,11 +1,13 @@
 """What the verbs of the command line promise when all is well."""
 
 import json
+import math
 import os
 import re
+import struct
 import unittest
 
-from support import VOID, CliTest, asc_text, height, main, read_hgt
+from support import VOID, CliTest, asc_text, height, main, raw_vrt_text, read_hgt
 
 VERBS = ["info", "sample", "fill", "evaluate", "curve", "reproduce", "methods"]
 
@@ -63,60 +65,59 @@ class Sample(CliTest):
 
     def test_count_is_exact_and_kept_cells_are_unchanged(self):
         self.hgt()
-        self.succeeds("sample", "N10E010.hgt", "N11E010.hgt", "--count", "123")
-        before, after = read_hgt(self.path("N10E010.hgt")), read_hgt(self.path("N11E010.hgt"))
-        self.assertEqual(self.known("N11E010.hgt"), 123)
+        self.succeeds("sample", "N10E010.hgt", "N10E010.out.hgt", "--count", "123")
+        before, after = read_hgt(self.path("N10E010.hgt")), read_hgt(self.path("N10E010.out.hgt"))
+        self.assertEqual(self.known("N10E010.out.hgt"), 123)
         self.assertTrue(all(a in (b, VOID) for a, b in zip(after, before)))
 
     def test_percentages_are_of_the_known_cells(self):
         self.holed()
         known = 33 * 33 - 18
         for option in ("--keep", "--edges"):
-            self.succeeds("sample", "N10E010.hgt", "N11E010.hgt", option, "10%", "--overwrite")
-            self.assertEqual(self.known("N11E010.hgt"), round(known / 10))
-        self.succeeds("sample", "N10E010.hgt", "N11E010.hgt", "--voids", "10%", "--overwrite")
-        self.assertEqual(self.known("N11E010.hgt"), known - round(known / 10))
+            self.succeeds("sample", "N10E010.hgt", "N10E010.out.hgt", option, "10%", "--overwrite")
+            self.assertEqual(self.known("N10E010.out.hgt"), round(known / 10))
+        self.succeeds("sample", "N10E010.hgt", "N10E010.out.hgt", "--voids", "10%", "--overwrite")
+        self.assertEqual(self.known("N10E010.out.hgt"), known - round(known / 10))
 
     def test_every_keeps_a_regular_lattice(self):
         self.hgt()
-        self.succeeds("sample", "N10E010.hgt", "N11E010.hgt", "--every", "8")
-        self.assertEqual(self.known("N11E010.hgt"), 25)
+        self.succeeds("sample", "N10E010.hgt", "N10E010.out.hgt", "--every", "8")
+        self.assertEqual(self.known("N10E010.out.hgt"), 25)
 
     def test_tracks_and_contours_keep_a_part(self):
         self.hgt()
         for option in (["--tracks", "3"], ["--contours", "20"]):
-            self.succeeds("sample", "N10E010.hgt", "N11E010.hgt", *option, "--overwrite")
-            self.assertTrue(0 < self.known("N11E010.hgt") < 33 * 33)
+            self.succeeds("sample", "N10E010.hgt", "N10E010.out.hgt", *option, "--overwrite")
+            self.assertTrue(0 < self.known("N10E010.out.hgt") < 33 * 33)
 
     def test_seed_chooses_the_cells(self):
         self.hgt()
         for name, seed in (("a", "1"), ("b", "1"), ("c", "2")):
             self.succeeds("sample", "N10E010.hgt", f"{name}.asc", "--count", "50", "--seed", seed)
-        texts = [open(self.path(f"{n}.asc")).read() for n in "abc"]
-        self.assertEqual(texts[0], texts[1])
-        self.assertNotEqual(texts[0], texts[2])
+        first, same, other = (self.read(f"{name}.asc") for name in "abc")
+        self.assertEqual(first, same)
+        self.assertNotEqual(first, other)
 
 
 class Fill(CliTest):
     def test_fills_every_void_and_keeps_known_cells(self):
         self.holed()
-        self.succeeds("fill", "N10E010.hgt", "N11E010.hgt")
-        before, after = read_hgt(self.path("N10E010.hgt")), read_hgt(self.path("N11E010.hgt"))
+        self.succeeds("fill", "N10E010.hgt", "N10E010.out.hgt")
+        before, after = read_hgt(self.path("N10E010.hgt")), read_hgt(self.path("N10E010.out.hgt"))
         self.assertNotIn(VOID, after)
         self.assertTrue(all(b in (a, VOID) for a, b in zip(after, before)))
 
     def test_inner_only_leaves_voids_at_the_border_and_is_done(self):
         self.holed()
-        done = self.succeeds("fill", "N10E010.hgt", "N11E010.hgt", "--inner-only", "--json")
+        done = self.succeeds("fill", "N10E010.hgt", "N10E010.out.hgt", "--inner-only", "--json")
         report = json.loads(done.stdout)
         self.assertEqual((report["filled"], report["left_at_border"], report["left"]), (12, 6, 0))
-        self.assertEqual(read_hgt(self.path("N11E010.hgt")).count(VOID), 6)
+        self.assertEqual(read_hgt(self.path("N10E010.out.hgt")).count(VOID), 6)
 
     def test_all_known_is_a_copy(self):
         self.hgt()
-        self.succeeds("fill", "N10E010.hgt", "N11E010.hgt")
-        with open(self.path("N10E010.hgt"), "rb") as a, open(self.path("N11E010.hgt"), "rb") as b:
-            self.assertEqual(a.read(), b.read())
+        self.succeeds("fill", "N10E010.hgt", "N10E010.out.hgt")
+        self.assertEqual(self.read("N10E010.hgt"), self.read("N10E010.out.hgt"))
 
     def test_one_cell_is_a_copy(self):
         self.write("one.asc", asc_text([[42]]))
@@ -129,14 +130,15 @@ class Fill(CliTest):
         table = json.loads(self.succeeds("methods", "--json").stdout)["fill"]
         for name in [m["name"] for m in table]:
             for threads in "12":
-                self.succeeds("fill", "N10E010.hgt", f"{threads}.hgt", "--tile", "N10E010", "-m", name,
+                self.succeeds("fill", "N10E010.hgt", f"N10E010.{threads}.hgt", "-m", name,
                               "-j", threads, "--overwrite")
-            with open(self.path("1.hgt"), "rb") as a, open(self.path("2.hgt"), "rb") as b:
-                self.assertEqual(a.read(), b.read(), name)
+            self.assertEqual(self.read("N10E010.1.hgt"), self.read("N10E010.2.hgt"), name)
 
     def test_nan_and_infinity_are_voids(self):
-        self.write("a.asc", asc_text([["nan", 5, 5], [5, "inf", 5], ["-inf", 5, 5]]))
-        report = json.loads(self.succeeds("fill", "a.asc", "out.tif", "--json").stdout)
+        cells = [math.nan, 5, 5, 5, math.inf, 5, -math.inf, 5, 5]
+        self.write("a.raw", struct.pack("<9f", *cells))
+        self.write("a.vrt", raw_vrt_text("a.raw", size=3))
+        report = json.loads(self.succeeds("fill", "a.vrt", "out.tif", "--json").stdout)
         self.assertEqual(report["filled"], 3)
         facts = json.loads(self.succeeds("info", "out.tif", "--json").stdout)["files"][0]
         self.assertEqual((facts["low_m"], facts["high_m"], facts["unknown_cells"]), (5, 5, 0))
@@ -185,8 +187,8 @@ class Evaluate(CliTest):
 
     def test_expectation_met_is_done_and_broken_is_exit_4(self):
         self.hgt()
-        self.hgt("N11E010.hgt", value=lambda c, r: height(c, r) + 3)
-        files = ["evaluate", "N10E010.hgt", "N11E010.hgt"]
+        self.hgt("N10E010.out.hgt", value=lambda c, r: height(c, r) + 3)
+        files = ["evaluate", "N10E010.hgt", "N10E010.out.hgt"]
         self.succeeds(*files, "--expect", "rmse<=3", "--expect", "bias>2.9")
         done = self.dem(*files, "--expect", "rmse<3")
         self.assertEqual(done.returncode, 4)
