@@ -1,0 +1,52 @@
+#pragma once
+// The terrain spline: the smoothest surface through the known cells, where "smooth" weighs first,
+// second and third differences so that the surface has the spectrum of terrain.
+
+#include <cstdint>
+#include <vector>
+
+#include "dem/dem.h"
+#include "dem/fields.h"
+#include "dem/run.h"
+
+namespace dem {
+
+/// Where the lengths L1 and L3 come from: from the DEM, or from the options.
+enum class SplineParameters { automatic, manual };
+
+/// Options of fill_spline. The energy is the sum over 1 <= i + j <= 3 of c_ij ||Dx^i Dy^j z||^2,
+/// its symbol a1 K + a2 K^2 + a3 K^3 with K the squared wavenumber per row; lengths are in rows.
+struct SplineOptions {
+  SplineParameters parameters = SplineParameters::automatic;
+  double L1_rows = 48;  ///< membrane for waves longer than this: a1 = (2 pi / L1)^2; 0: none
+  double L3_rows = 7;   ///< third order for waves shorter than this: a3 = (L3 / 2 pi)^2; 0: none
+  double a2 = 1;        ///< weight of the plate; 0 with L3 = 0: a pure membrane of a1 = 1
+  double nugget = 0;    ///< variance of the data's noise over the square of the springs' scale
+  bool smooth_known = false;  ///< with a nugget: whether known cells return smoothed
+  double tolerance_m =
+      0;  ///< stop when the estimated RMS error is below; 0: 1 % of the change made
+  int max_iterations = 100;
+};
+std::vector<Field> fields(SplineOptions& options);
+
+/// Fills every unknown cell with the terrain spline.
+/// Method:   springs of orders one to three, free boundaries, on what is left after the known
+/// cells'
+///           least-squares plane; conjugate gradients preconditioned by one V-cycle, started from
+///           MCMD. With a nugget, known cells pull by springs instead of being met exactly.
+/// Needs:    at least one known cell.
+/// Gives:    all finite; known cells bit for bit (unless smooth_known). The report tells
+/// iterations,
+///           estimated_error, residual, the parameters used, and `converged` (1 or 0).
+/// Exact on: constants; planes, to rounding.
+/// Cost:     O(cells), about 40 bytes a cell beside the result. Any number of threads gives the
+///           same bits.
+/// Throws:   std::invalid_argument, Cancelled.
+Filled fill_spline(const Dem& dem, const SplineOptions& options = {}, const Run& run = {});
+
+/// The same with noise that differs from cell to cell: `noise`, of the size of the DEM, multiplies
+/// the nugget (1: as it is; 0: this cell is exact).
+Filled fill_spline(const Dem& dem, const Raster<float>& noise, const SplineOptions& options,
+                   const Run& run = {});
+
+}  // namespace dem

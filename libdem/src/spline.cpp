@@ -1,0 +1,253 @@
+#include "dem/spline.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "parallel.h"
+#include "spline_solver.h"
+
+namespace dem {
+namespace {
+
+constexpr double two_pi = 2 * std::numbers::pi;
+
+// ---- The plane under the terrain -------------------------------------------------------------
+
+/// Height mean_m + slope_x (col - centre_x) + slope_y (row - centre_y).
+struct Plane {
+  double mean_m = 0, slope_x = 0, slope_y = 0, centre_x = 0, centre_y = 0;
+  double at(int col, int row) const {
+    return mean_m + slope_x * (col - centre_x) + slope_y * (row - centre_y);
+  }
+};
+
+/// Calls each(col, row, z) for every known cell.
+template <class Each>
+void for_known(const Dem& dem, const Each& each) {
+  for (int y = 0; y < dem.size().rows; ++y) {
+    const auto known = dem.known.row(y);
+    const auto z = dem.z.row(y);
+    for (int x = 0; x < dem.size().cols; ++x)
+      if (known[std::size_t(x)]) each(x, y, double(z[std::size_t(x)]));
+  }
+}
+
+/// The least-squares plane of the known cells. Cells on a line leave the slope across it open: 0.
+Plane fit_plane(const Dem& dem) {
+  double n = 0, x_sum = 0, y_sum = 0, z_sum = 0;
+  for_known(dem, [&](int x, int y, double z) {
+    ++n;
+    x_sum += x;
+    y_sum += y;
+    z_sum += z;
+  });
+  Plane plane{z_sum / n, 0, 0, x_sum / n, y_sum / n};
+  double xx = 0, xy = 0, yy = 0, xz = 0, yz = 0;
+  for_known(dem, [&](int col, int row, double z) {
+    const double x = col - plane.centre_x, y = row - plane.centre_y, h = z - plane.mean_m;
+    xx += x * x;
+    xy += x * y;
+    yy += y * y;
+    xz += x * h;
+    yz += y * h;
+  });
+  // Pseudo-inverse of the 2 x 2 matrix through its eigenvectors (ux, uy).
+  const double half = (xx - yy) / 2, radius = std::hypot(half, xy), middle = (xx + yy) / 2;
+  const double angle = std::atan2(xy, half) / 2;
+  for (const double sign : {1., -1.}) {
+    const double eigenvalue = middle + sign * radius;
+    if (eigenvalue <= 1e-9 * (middle + radius)) continue;
+    const double ux = sign > 0 ? std::cos(angle) : -std::sin(angle);
+    const double uy = sign > 0 ? std::sin(angle) : std::cos(angle);
+    const double along = (ux * xz + uy * yz) / eigenvalue;
+    plane.slope_x += along * ux;
+    plane.slope_y += along * uy;
+  }
+  return plane;
+}
+
+// ---- The energy --------------------------------------------------------------------------------
+
+/// Where the options leave the energy blind to constants (no membrane), a membrane a thousand times
+/// longer than the DEM holds what the data do not.
+Springs springs_of(const SplineOptions& options, double X, Size size) {
+  const double diagonal = std::hypot(size.cols / std::sqrt(X), size.rows);
+  const double L1 = options.L1_rows > 0 ? options.L1_rows : 1000 * diagonal;
+  const double a1 = std::pow(two_pi / L1, 2), a3 = std::pow(options.L3_rows / two_pi, 2);
+  return terrain_springs(a1, options.a2, a3, X);
+}
+
+double squared_aspect(Spacing spacing) {
+  if (!(spacing.dx_m > 0) || !(spacing.dy_m > 0) || !std::isfinite(spacing.dx_m / spacing.dy_m))
+    throw std::invalid_argument(fmt::format("spacing = {} x {} m; both must be positive numbers",
+                                            spacing.dx_m, spacing.dy_m));
+  return std::pow(spacing.dy_m / spacing.dx_m, 2);
+}
+
+// ---- The start
+// -----------------------------------------------------------------------------------
+
+Raster<float> start_surface(const Dem& dem) {
+  // Means of known children, then the parent's value where there is none.
+  std::vector<Raster<float>> sums, counts;
+  Raster<float> sum(dem.size()), weight(dem.size());
+  for (int y = 0; y < dem.size().rows; ++y)
+    for (int x = 0; x < dem.size().cols; ++x)
+      if (dem.known(x, y)) sum(x, y) = dem.z(x, y), weight(x, y) = 1;
+  while (true) {
+    sums.push_back(sum);
+    counts.push_back(weight);
+    const Size fine = sum.size(), coarse{(fine.cols + 1) / 2, (fine.rows + 1) / 2};
+    if (fine.cells() == 1) break;
+    Raster<float> s(coarse), w(coarse);
+    for (int y = 0; y < fine.rows; ++y)
+      for (int x = 0; x < fine.cols; ++x)
+        s(x / 2, y / 2) += sum(x, y), w(x / 2, y / 2) += weight(x, y);
+    sum = std::move(s);
+    weight = std::move(w);
+  }
+  for (std::size_t l = sums.size(); l-- > 0;)
+    for (int y = 0; y < sums[l].rows(); ++y)
+      for (int x = 0; x < sums[l].cols(); ++x)
+        sums[l](x, y) =
+            counts[l](x, y) > 0 ? sums[l](x, y) / counts[l](x, y) : sums[l + 1](x / 2, y / 2);
+  return sums[0];
+}
+
+/// The DEM with the plane taken off.
+Dem detrended(const Dem& dem, const Plane& plane) {
+  Dem flat = dem;
+  parallel_for(0, dem.size().rows, 32, [&](int y) {
+    const auto z = flat.z.row(y);
+    for (int x = 0; x < dem.size().cols; ++x)
+      z[std::size_t(x)] = dem.known(x, y) ? float(double(z[std::size_t(x)]) - plane.at(x, y)) : 0;
+  });
+  return flat;
+}
+
+/// Heights above the plane: exact at known cells, the start elsewhere.
+Grid<double> above_plane(const Dem& dem, const Plane& plane) {
+  const Raster<float> start = start_surface(detrended(dem, plane));
+  Grid<double> x(dem.size());
+  parallel_for(0, dem.size().rows, 32, [&](int row) {
+    for (int col = 0; col < dem.size().cols; ++col)
+      x.row(row)[col] = dem.known(col, row) ? double(dem.z(col, row)) - plane.at(col, row)
+                                            : double(start(col, row));
+  });
+  return x;
+}
+
+// ---- Data that are met, and data that pull
+// ---------------------------------------------------------
+
+struct Data {
+  Mask free;      ///< cells to solve for
+  Grid<float> w;  ///< 1 / (nugget * noise) at known cells that pull; empty: all are met
+  Grid<float> f;  ///< w * height above the plane
+};
+
+Data make_data(const Dem& dem, const Raster<float>& noise, double nugget, const Grid<double>& x) {
+  Data data{Mask(dem.size()), {}, {}};
+  if (nugget > 0) {
+    data.w = Grid<float>(dem.size());
+    data.f = Grid<float>(dem.size());
+  }
+  for (int row = 0; row < dem.size().rows; ++row)
+    for (int col = 0; col < dem.size().cols; ++col) {
+      const double variance = noise.empty() ? nugget : nugget * double(noise(col, row));
+      if (!dem.known(col, row)) {
+        data.free(col, row) = 1;
+      } else if (variance > 0) {
+        data.free(col, row) = 1;
+        data.w.row(row)[col] = float(1 / variance);
+        data.f.row(row)[col] = float(x.row(row)[col] / variance);
+      }
+    }
+  return data;
+}
+
+Filled solve(const Dem& dem, const Raster<float>& noise, const SplineOptions& options,
+             const Run& run) {
+  const double X = squared_aspect(dem.spacing);
+  const Plane plane = fit_plane(dem);
+  Grid<double> x = above_plane(dem, plane);
+  run.report(0.05, "solving the spline");
+
+  Solved solved;
+  {
+    Data data = make_data(dem, noise, options.nugget, x);
+    SplineSolver solver(springs_of(options, X, dem.size()), X, data.free, std::move(data.w));
+    const SolveLimits limits{options.tolerance_m, options.tolerance_m > 0 ? 0 : 0.01,
+                             options.max_iterations};
+    solved = solver.solve(x, data.f.empty() ? nullptr : &data.f, limits, run.part(0.05, 1));
+  }
+
+  Filled filled;
+  filled.z = Raster<float>(dem.size());
+  parallel_for(0, dem.size().rows, 32, [&](int row) {
+    for (int col = 0; col < dem.size().cols; ++col)
+      filled.z(col, row) = dem.known(col, row) && !options.smooth_known
+                               ? dem.z(col, row)
+                               : float(x.row(row)[col] + plane.at(col, row));
+  });
+  filled.report = {{"iterations", double(solved.iterations), ""},
+                   {"converged", solved.converged ? 1. : 0., ""},
+                   {"estimated_error", solved.estimated_error_m, "m"},
+                   {"residual", solved.residual_m, "m"},
+                   {"L1", options.L1_rows, "rows"},
+                   {"L3", options.L3_rows, "rows"},
+                   {"nugget", options.nugget, ""}};
+  return filled;
+}
+
+}  // namespace
+
+std::vector<Field> fields(SplineOptions& o) {
+  return {
+      {"parameters",
+       o.parameters,
+       {"automatic", "manual"},
+       "L1 and L3 from the DEM, or as set here"},
+      {"L1",
+       o.L1_rows,
+       {0, 1e9},
+       "rows",
+       "membrane acts on waves longer than this; 0: no membrane"},
+      {"L3", o.L3_rows, {0, 1000}, "rows", "third order acts on waves shorter than this; 0: none"},
+      {"a2", o.a2, {0, 1e9}, "", "weight of the plate (second order)"},
+      {"nugget",
+       o.nugget,
+       {0, 1e9},
+       "",
+       "noise variance of the data over the springs' scale; 0: exact"},
+      {"smooth_known", o.smooth_known, "with a nugget: known cells return smoothed"},
+      {"tolerance",
+       o.tolerance_m,
+       {0, 1e9},
+       "m",
+       "stop when the estimated RMS error is below; 0: a hundredth of the change made"},
+      {"max_iterations", o.max_iterations, {1, 100000}, "", "stop after so many iterations"},
+  };
+}
+
+Filled fill_spline(const Dem& dem, const SplineOptions& options, const Run& run) {
+  return fill_spline(dem, Raster<float>(), options, run);
+}
+
+Filled fill_spline(const Dem& dem, const Raster<float>& noise, const SplineOptions& given,
+                   const Run& run) {
+  check_fillable(dem);
+  SplineOptions options = given;
+  check(fields(options));
+  if (!noise.empty() && noise.size() != dem.size())
+    throw std::invalid_argument(fmt::format("noise is {} x {}; must be {} x {} as the dem",
+                                            noise.cols(), noise.rows(), dem.size().cols,
+                                            dem.size().rows));
+  return with_threads(run.threads, [&] { return solve(dem, noise, options, run); });
+}
+
+}  // namespace dem

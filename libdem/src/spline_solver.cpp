@@ -1,0 +1,162 @@
+#include "spline_solver.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "parallel.h"
+
+namespace dem {
+namespace {
+
+constexpr int row_grain = 16;
+
+/// Sums in eight lanes, so that the order of additions is fixed and the loop is still a vector one.
+DEM_CLONES double dot_span(const float* a, const float* b, Span span) {
+  double lane[8] = {};
+  int x = span.begin;
+  for (; x + 8 <= span.end; x += 8)
+    for (int l = 0; l < 8; ++l) lane[l] += double(a[x + l]) * double(b[x + l]);
+  for (; x < span.end; ++x) lane[0] += double(a[x]) * double(b[x]);
+  return ((lane[0] + lane[1]) + (lane[2] + lane[3])) + ((lane[4] + lane[5]) + (lane[6] + lane[7]));
+}
+
+DEM_CLONES void direction_span(const float* s, float beta, Span span, float* p) {
+  DEM_INDEPENDENT
+  for (int x = span.begin; x < span.end; ++x) p[x] = s[x] + beta * p[x];
+}
+
+DEM_CLONES void advance_span(const float* p, double alpha, Span span, double* x) {
+  DEM_INDEPENDENT
+  for (int i = span.begin; i < span.end; ++i) x[i] += alpha * double(p[i]);
+}
+
+/// The sum over rows of row_sum(y): rows in parallel, their sums added in order.
+template <class RowSum>
+double sum_rows(int rows, const RowSum& row_sum) {
+  std::vector<double> sums(std::size_t(rows), 0.);
+  parallel_for(0, rows, row_grain, [&](int y) { sums[std::size_t(y)] = row_sum(y); });
+  double total = 0;
+  for (const double s : sums) total += s;
+  return total;
+}
+
+}  // namespace
+
+SplineSolver::SplineSolver(const Springs& springs, double X, const Mask& free, Grid<float> w)
+    : multigrid_(springs, X, free, std::move(w)),
+      unknowns_(count(free)),
+      r_(free.size()),
+      p_(free.size()),
+      q_(free.size()) {}
+
+void SplineSolver::residual(const Grid<double>& x, const Grid<float>* f) {
+  const Level& level = multigrid_.finest();
+  const std::vector<double> zeros(std::size_t(Grid<double>::stride_for(level.size.cols)));
+  parallel_for(0, level.size.rows, row_grain, [&](int y) {
+    const auto around = rows_around(x, y, zeros.data() + Grid<double>::margin);
+    for (const Span span : level.spans.row(y))
+      residual_row(level.A.exact_row(y), around.data(), f ? f->row(y) : nullptr,
+                   level.w.empty() ? nullptr : level.w.row(y), level.dinv.row(y), span,
+                   level.size.cols, r_.row(y));
+  });
+}
+
+double SplineSolver::dot(const Grid<float>& a, const Grid<float>& b) const {
+  const Level& level = multigrid_.finest();
+  return sum_rows(level.size.rows, [&](int y) {
+    double sum = 0;
+    for (const Span span : level.spans.row(y)) sum += dot_span(a.row(y), b.row(y), span);
+    return sum;
+  });
+}
+
+void SplineSolver::next_direction(const Grid<float>& s, float beta) {
+  const Level& level = multigrid_.finest();
+  parallel_for(0, level.size.rows, row_grain, [&](int y) {
+    for (const Span span : level.spans.row(y)) direction_span(s.row(y), beta, span, p_.row(y));
+  });
+}
+
+SplineSolver::Products SplineSolver::apply() {
+  const Level& level = multigrid_.finest();
+  const std::vector<float> zeros(std::size_t(Grid<float>::stride_for(level.size.cols)));
+  std::vector<Products> sums(std::size_t(level.size.rows));
+  parallel_for(0, level.size.rows, row_grain, [&](int y) {
+    const auto around = rows_around(p_, y, zeros.data() + Grid<float>::margin);
+    Products& sum = sums[std::size_t(y)];
+    for (const Span span : level.spans.row(y)) {
+      apply_row(level.A.row(y), around.data(), level.w.empty() ? nullptr : level.w.row(y),
+                level.dinv.row(y), span, level.size.cols, q_.row(y));
+      sum.pAp += dot_span(p_.row(y), q_.row(y), span);
+      sum.rp += dot_span(r_.row(y), p_.row(y), span);
+      sum.pp += dot_span(p_.row(y), p_.row(y), span);
+    }
+  });
+  Products total;
+  for (const Products& sum : sums) {
+    total.pAp += sum.pAp;
+    total.rp += sum.rp;
+    total.pp += sum.pp;
+  }
+  return total;
+}
+
+void SplineSolver::advance(Grid<double>& x, double alpha) const {
+  const Level& level = multigrid_.finest();
+  parallel_for(0, level.size.rows, row_grain, [&](int y) {
+    for (const Span span : level.spans.row(y)) advance_span(p_.row(y), alpha, span, x.row(y));
+  });
+}
+
+Solved SplineSolver::solve(Grid<double>& x, const Grid<float>* f, const SolveLimits& limits,
+                           const Run& run) {
+  Solved solved;
+  const double n = std::max(1., double(unknowns_));
+  double pAp = 0, change2 = 0, last_step = 0, last_rate = 0.5;
+  residual(x, f);
+  while (unknowns_ > 0) {
+    if (dot(r_, r_) == 0) {
+      solved.estimated_error_m = 0;
+      solved.converged = true;
+      break;
+    }
+    if (solved.converged || solved.iterations == limits.max_iterations) break;
+
+    // Precondition; make the direction conjugate to the last one.
+    const Grid<float>& s = multigrid_.v_cycle(r_);
+    next_direction(s, pAp > 0 ? float(-dot(s, q_) / pAp) : 0.f);
+    const Products products = apply();
+    const bool restarted = pAp == 0;
+    pAp = products.pAp;
+    if (!(pAp > 0)) {
+      // Nothing but rounding is left in this direction: start anew once.
+      if (restarted) break;
+      pAp = 0;
+      continue;
+    }
+    const double alpha = products.rp / pAp;
+    advance(x, alpha);
+    residual(x, f);
+    ++solved.iterations;
+
+    // What is left, from the length of the steps and how fast they shrink.
+    const double step = std::abs(alpha) * std::sqrt(products.pp / n);
+    change2 += step * step;
+    const double rate =
+        solved.iterations == 1 ? 0.5 : std::clamp(step / std::max(last_step, 1e-300), 0.2, 0.95);
+    const double slower = std::max(rate, last_rate);
+    solved.estimated_error_m = step * slower / (1 - slower);
+    last_step = step;
+    last_rate = rate;
+    const double tolerance =
+        std::max(limits.tolerance_m, limits.relative_tolerance * std::sqrt(change2));
+    solved.converged = solved.estimated_error_m <= tolerance;
+    run.report(std::min(1., double(solved.iterations) / limits.max_iterations),
+               "solving the spline");
+  }
+  solved.residual_m = std::sqrt(dot(r_, r_) / n) / multigrid_.finest().A.interior_diagonal();
+  if (unknowns_ == 0) solved.converged = true;
+  return solved;
+}
+
+}  // namespace dem
