@@ -99,6 +99,10 @@ std::vector<Case> cases() {
   };
   variant("no membrane", 0.05, [](auto& o) { o.L1_rows = 0; });
   variant("no third order", 0.05, [](auto& o) { o.L3_rows = 0; });
+  variant("raw", 0.3, [](auto& o) {
+    o.L3_rows = 0;
+    o.fourth_order = false;
+  });
   variant("plate alone", 0.05, [](auto& o) { o.L1_rows = o.L3_rows = 0; });
   variant("short membrane", 0.05, [](auto& o) { o.L1_rows = 6; });
   variant("nugget", 0.1, [](auto& o) { o.nugget = 0.5; });
@@ -118,10 +122,11 @@ Eigen::VectorXd direct_solution(const Dem& dem, const SplineOptions& o) {
   const double a1 = std::pow(2 * std::numbers::pi / L1, 2);
   const double a3 = std::pow(o.L3_rows / (2 * std::numbers::pi), 2);
   const double a2 = o.a2;
-  const double weights[4][4] = {{0, a1, a2 + a1 / 12, a3 + a2 / 6},
-                                {a1 * X, 2 * a2 * X, 3 * a3 * X + a2 * X / 6, 0},
-                                {a2 * X * X + a1 * X / 12, 3 * a3 * X * X + a2 * X / 6, 0, 0},
-                                {a3 * X * X * X + a2 * X * X / 6, 0, 0, 0}};
+  const double e1 = o.fourth_order ? a1 / 12 : 0, e2 = o.fourth_order ? a2 / 6 : 0;
+  const double weights[4][4] = {{0, a1, a2 + e1, a3 + e2},
+                                {a1 * X, 2 * a2 * X, 3 * a3 * X + e2 * X, 0},
+                                {a2 * X * X + e1 * X, 3 * a3 * X * X + e2 * X, 0, 0},
+                                {a3 * X * X * X + e2 * X * X, 0, 0, 0}};
   const double binomial[4][4] = {{1, 0, 0, 0}, {-1, 1, 0, 0}, {1, -2, 1, 0}, {-1, 3, -3, 1}};
 
   std::vector<Eigen::Triplet<double>> entries;

@@ -78,7 +78,7 @@ Springs springs_of(const SplineOptions& options, double X, Size size) {
   const double diagonal = std::hypot(size.cols / std::sqrt(X), size.rows);
   const double L1 = options.L1_rows > 0 ? options.L1_rows : 1000 * diagonal;
   const double a1 = std::pow(two_pi / L1, 2), a3 = std::pow(options.L3_rows / two_pi, 2);
-  return terrain_springs(a1, options.a2, a3, X);
+  return terrain_springs(a1, options.a2, a3, X, options.fourth_order);
 }
 
 double squared_aspect(Spacing spacing) {
@@ -218,6 +218,7 @@ std::vector<Field> fields(SplineOptions& o) {
        "rows",
        "membrane acts on waves longer than this; 0: no membrane"},
       {"L3", o.L3_rows, {0, 1000}, "rows", "third order acts on waves shorter than this; 0: none"},
+      {"fourth_order", o.fourth_order, "fourth-order accurate wavenumbers; false suits rough ground"},
       {"a2", o.a2, {0, 1e9}, "", "weight of the plate (second order)"},
       {"nugget",
        o.nugget,

@@ -26,18 +26,19 @@ int row_of_class(int n, int k) { return n <= 7 || k <= 3 ? k : k + n - 7; }
 
 }  // namespace
 
-Springs terrain_springs(double a1, double a2, double a3, double X) {
+Springs terrain_springs(double a1, double a2, double a3, double X, bool fourth_order) {
+  const double e1 = fourth_order ? a1 / 12 : 0, e2 = fourth_order ? a2 / 6 : 0;
   Springs s;
   auto& c = s.c;
   c[1][0] = a1 * X;
   c[0][1] = a1;
-  c[2][0] = a2 * X * X + a1 * X / 12;
+  c[2][0] = a2 * X * X + e1 * X;
   c[1][1] = 2 * a2 * X;
-  c[0][2] = a2 + a1 / 12;
-  c[3][0] = a3 * X * X * X + a2 * X * X / 6;
-  c[2][1] = 3 * a3 * X * X + a2 * X / 6;
-  c[1][2] = 3 * a3 * X + a2 * X / 6;
-  c[0][3] = a3 + a2 / 6;
+  c[0][2] = a2 + e1;
+  c[3][0] = a3 * X * X * X + e2 * X * X;
+  c[2][1] = 3 * a3 * X * X + e2 * X;
+  c[1][2] = 3 * a3 * X + e2 * X;
+  c[0][3] = a3 + e2;
   return s;
 }
 

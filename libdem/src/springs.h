@@ -16,8 +16,8 @@ struct Springs {
 };
 
 /// The springs whose symbol is a1 K + a2 K^2 + a3 K^3, K = X gx' + gy', g' = g + g^2 / 12,
-/// g = 2 - 2 cos k, cut at order 3; X = (dy / dx)^2.
-Springs terrain_springs(double a1, double a2, double a3, double X);
+/// g = 2 - 2 cos k, cut at order 3; X = (dy / dx)^2. Not `fourth_order`: g' = g.
+Springs terrain_springs(double a1, double a2, double a3, double X, bool fourth_order = true);
 
 /// The same energy on a grid whose cells are hx columns wide and hy rows high.
 Springs coarsen(const Springs& springs, double hx, double hy);

@@ -21,6 +21,7 @@ struct SplineOptions {
   double L1_rows = 48;  ///< membrane for waves longer than this: a1 = (2 pi / L1)^2; 0: none
   double L3_rows = 7;   ///< third order for waves shorter than this: a3 = (L3 / 2 pi)^2; 0: none
   double a2 = 1;        ///< weight of the plate; 0 with L3 = 0: a pure membrane of a1 = 1
+  bool fourth_order = true;  ///< g + g^2 / 12 for the squared wavenumber; false: g, for rough ground
   double nugget = 0;    ///< variance of the data's noise over the square of the springs' scale
   bool smooth_known = false;  ///< with a nugget: whether known cells return smoothed
   double tolerance_m =
