@@ -86,16 +86,18 @@ DEM_CLONES void weighted_chebyshev_row(const RowStencil<float>& A, const float* 
 }
 
 DEM_CLONES void free_residual_row(const RowStencil<float>& A, const float* const* u, const float* b,
-                                  const float* dinv, const float* w, Span span, int cols,
-                                  float* out) {
+                                  const float* dinv, const float* w, Span span, int cols, float* out) {
   const float* here = u[3];
   if (w)
     for_span(A, u, span, cols, [=](int x, float Au) DEM_INLINE {
-      out[x] = dinv[x] != 0 ? b[x] - Au - w[x] * here[x] : 0;
+      const float r = b[x] - Au - w[x] * here[x];
+      out[x] = dinv[x] != 0 ? r : 0;
     });
   else
-    for_span(A, u, span, cols,
-             [=](int x, float Au) DEM_INLINE { out[x] = dinv[x] != 0 ? b[x] - Au : 0; });
+    for_span(A, u, span, cols, [=](int x, float Au) DEM_INLINE {
+      const float r = b[x] - Au;
+      out[x] = dinv[x] != 0 ? r : 0;
+    });
 }
 
 DEM_CLONES void first_step_row(const float* dinv, const float* b, float c, Span span, float* out) {
@@ -105,10 +107,10 @@ DEM_CLONES void first_step_row(const float* dinv, const float* b, float c, Span 
 
 // ---- Between grids ---------------------------------------------------------------------------
 
-/// out += weight * in.
-DEM_CLONES void add_row(float weight, const float* in, int cols, float* out) {
+/// sum = here + (sum + below) / 2.
+DEM_CLONES void between_row(const float* here, const float* below, int cols, float* sum) {
   DEM_INDEPENDENT
-  for (int x = 0; x < cols; ++x) out[x] += weight * in[x];
+  for (int x = 0; x < cols; ++x) sum[x] = here[x] + 0.5f * (sum[x] + below[x]);
 }
 
 /// Half of the transposed linear interpolation: out[X] = in[2X] + (in[2X - 1] + in[2X + 1]) / 2.
@@ -124,8 +126,9 @@ DEM_CLONES void double_row(const float* coarse, const float* u, const float* din
   DEM_INDEPENDENT
   for (int X = begin / 2; X < (end + 1) / 2; ++X) {
     const float even = coarse[X], odd = 0.5f * (coarse[X] + coarse[X + 1]);
-    out[2 * X] = dinv[2 * X] != 0 ? u[2 * X] + even : 0;
-    out[2 * X + 1] = dinv[2 * X + 1] != 0 ? u[2 * X + 1] + odd : 0;
+    const float at_even = u[2 * X] + even, at_odd = u[2 * X + 1] + odd;
+    out[2 * X] = dinv[2 * X] != 0 ? at_even : 0;
+    out[2 * X + 1] = dinv[2 * X + 1] != 0 ? at_odd : 0;
   }
 }
 
@@ -137,7 +140,10 @@ DEM_CLONES void mean_row(const float* one, const float* other, int cols, float* 
 DEM_CLONES void copy_row(const float* coarse, const float* u, const float* dinv, int begin, int end,
                          float* out) {
   DEM_INDEPENDENT
-  for (int x = begin; x < end; ++x) out[x] = dinv[x] != 0 ? u[x] + coarse[x] : 0;
+  for (int x = begin; x < end; ++x) {
+    const float sum = u[x] + coarse[x];
+    out[x] = dinv[x] != 0 ? sum : 0;
+  }
 }
 
 struct Halving {
@@ -147,23 +153,37 @@ Halving halving(const Level& fine, const Level& coarse) {
   return {coarse.hx > fine.hx, coarse.hy > fine.hy};
 }
 
-/// coarse row Y += P^T of the fine rows that `fine_row(y, row)` makes.
+/// Coarse rows [Y0, Y1) of P^T times the fine rows that `fine_row(y, row)` makes.
 template <class FineRow>
-void restrict_row(Size fine, Size coarse, Halving half, int Y, float* out,
-                  std::vector<float>& scratch, const FineRow& fine_row) {
+void restrict_band(Size fine, Halving half, int Y0, int Y1, Grid<float>& coarse, const FineRow& fine_row) {
   const std::size_t stride = std::size_t(Grid<float>::stride_for(fine.cols));
-  scratch.assign(2 * stride, 0);
-  float* one = scratch.data() + Grid<float>::margin;
-  float* sum = one + stride;
-  const int from = half.y ? 2 * Y - 1 : Y, to = half.y ? 2 * Y + 1 : Y;
-  for (int y = std::max(from, 0); y <= std::min(to, fine.rows - 1); ++y) {
-    fine_row(y, one);
-    add_row(half.y && y != 2 * Y ? 0.5f : 1.f, one, fine.cols, sum);
+  std::vector<float> buffers(3 * stride);
+  float* here = buffers.data() + Grid<float>::margin;
+  float* below = here + stride;  // between this coarse row and the next: used for both
+  float* sum = below + stride;
+  const auto make = [&](int y, float* row) {
+    if (y >= 0 && y < fine.rows)
+      fine_row(y, row);
+    else
+      std::fill(row, row + fine.cols, 0.f);
+  };
+  if (half.y) make(2 * Y0 - 1, below);
+  for (int Y = Y0; Y < Y1; ++Y) {
+    const float* combined = here;
+    if (half.y) {
+      std::copy(below, below + fine.cols, sum);
+      make(2 * Y, here);
+      make(2 * Y + 1, below);
+      between_row(here, below, fine.cols, sum);
+      combined = sum;
+    } else {
+      make(Y, here);
+    }
+    if (half.x)
+      halve_row(combined, coarse.size().cols, coarse.row(Y));
+    else
+      std::copy(combined, combined + fine.cols, coarse.row(Y));
   }
-  if (half.x)
-    halve_row(sum, coarse.cols, out);
-  else
-    std::copy(sum, sum + coarse.cols, out);
 }
 
 // ---- Bands of rows ---------------------------------------------------------------------------
@@ -265,26 +285,33 @@ DEM_CLONES void apply_row(const RowStencil<float>& A, const float* const* u, con
                           const float* dinv, Span span, int cols, float* out) {
   const float* here = u[3];
   if (w)
-    for_span(A, u, span, cols,
-             [=](int x, float Au) DEM_INLINE { out[x] = dinv[x] != 0 ? Au + w[x] * here[x] : 0; });
+    for_span(A, u, span, cols, [=](int x, float Au) DEM_INLINE {
+      const float sum = Au + w[x] * here[x];
+      out[x] = dinv[x] != 0 ? sum : 0;
+    });
   else
     for_span(A, u, span, cols, [=](int x, float Au) DEM_INLINE { out[x] = dinv[x] != 0 ? Au : 0; });
 }
 
 DEM_CLONES void residual_row(const RowStencil<double>& A, const double* const* x, const float* f,
                              const float* w, const float* dinv, Span span, int cols, float* out) {
+  // The difference is taken in double, then rounded; the choice is made last, so that no branch is left.
   const double* here = x[3];
   if (w)
     for_span(A, x, span, cols, [=](int i, double Ax) DEM_INLINE {
-      out[i] = dinv[i] != 0 ? float(double(f[i]) - Ax - double(w[i]) * here[i]) : 0;
+      const float r = float(double(f[i]) - Ax - double(w[i]) * here[i]);
+      out[i] = dinv[i] != 0 ? r : 0;
     });
   else if (f)
     for_span(A, x, span, cols, [=](int i, double Ax) DEM_INLINE {
-      out[i] = dinv[i] != 0 ? float(double(f[i]) - Ax) : 0;
+      const float r = float(double(f[i]) - Ax);
+      out[i] = dinv[i] != 0 ? r : 0;
     });
   else
-    for_span(A, x, span, cols,
-             [=](int i, double Ax) DEM_INLINE { out[i] = dinv[i] != 0 ? float(-Ax) : 0; });
+    for_span(A, x, span, cols, [=](int i, double Ax) DEM_INLINE {
+      const float r = float(-Ax);
+      out[i] = dinv[i] != 0 ? r : 0;
+    });
 }
 
 // ---- The coarsest grid -------------------------------------------------------------------------
@@ -378,11 +405,8 @@ void fine_weight_row(const Level& fine, int y, float* row) {
 template <class FineRow>
 Grid<float> restricted(Size fine, Size coarse, Halving half, const FineRow& fine_row) {
   Grid<float> out(coarse);
-  in_bands(coarse.rows, coarse.cols, [&](int Y0, int Y1) {
-    std::vector<float> scratch;
-    for (int Y = Y0; Y < Y1; ++Y)
-      restrict_row(fine, coarse, half, Y, out.row(Y), scratch, fine_row);
-  });
+  in_bands(coarse.rows, coarse.cols,
+           [&](int Y0, int Y1) { restrict_band(fine, half, Y0, Y1, out, fine_row); });
   return out;
 }
 
@@ -501,18 +525,13 @@ void Multigrid::cycle(std::size_t l, const Grid<float>& b) {
   in_bands(coarse.size.rows, coarse.size.cols, [&](int Y0, int Y1) {
     const std::vector<float> zeros(static_cast<std::size_t>(Grid<float>::stride_for(cols)));
     const float* zero = zeros.data() + Grid<float>::margin;
-    std::vector<float> scratch;
-    for (int Y = Y0; Y < Y1; ++Y) {
-      if (coarse.spans.row(Y).empty()) continue;
-      restrict_row(fine.size, coarse.size, half, Y, coarse.b.row(Y), scratch,
-                   [&](int y, float* row) {
-                     clear_gaps(row, fine.spans.row(y), cols);
-                     const auto around = rows_around(fine.u, y, zero);
-                     for (const Span span : fine.spans.row(y))
-                       free_residual_row(fine.A.row(y), around.data(), b.row(y), fine.dinv.row(y),
-                                         fine.w.empty() ? nullptr : fine.w.row(y), span, cols, row);
-                   });
-    }
+    restrict_band(fine.size, half, Y0, Y1, coarse.b, [&](int y, float* row) {
+      clear_gaps(row, fine.spans.row(y), cols);
+      const auto around = rows_around(fine.u, y, zero);
+      for (const Span span : fine.spans.row(y))
+        free_residual_row(fine.A.row(y), around.data(), b.row(y), fine.dinv.row(y),
+                          fine.w.empty() ? nullptr : fine.w.row(y), span, cols, row);
+    });
   });
 
   cycle(l + 1, coarse.b);

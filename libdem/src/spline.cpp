@@ -7,6 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "dem/mcmd.h"
 #include "parallel.h"
 #include "spline_solver.h"
 
@@ -91,33 +92,6 @@ double squared_aspect(Spacing spacing) {
 // ---- The start
 // -----------------------------------------------------------------------------------
 
-Raster<float> start_surface(const Dem& dem) {
-  // Means of known children, then the parent's value where there is none.
-  std::vector<Raster<float>> sums, counts;
-  Raster<float> sum(dem.size()), weight(dem.size());
-  for (int y = 0; y < dem.size().rows; ++y)
-    for (int x = 0; x < dem.size().cols; ++x)
-      if (dem.known(x, y)) sum(x, y) = dem.z(x, y), weight(x, y) = 1;
-  while (true) {
-    sums.push_back(sum);
-    counts.push_back(weight);
-    const Size fine = sum.size(), coarse{(fine.cols + 1) / 2, (fine.rows + 1) / 2};
-    if (fine.cells() == 1) break;
-    Raster<float> s(coarse), w(coarse);
-    for (int y = 0; y < fine.rows; ++y)
-      for (int x = 0; x < fine.cols; ++x)
-        s(x / 2, y / 2) += sum(x, y), w(x / 2, y / 2) += weight(x, y);
-    sum = std::move(s);
-    weight = std::move(w);
-  }
-  for (std::size_t l = sums.size(); l-- > 0;)
-    for (int y = 0; y < sums[l].rows(); ++y)
-      for (int x = 0; x < sums[l].cols(); ++x)
-        sums[l](x, y) =
-            counts[l](x, y) > 0 ? sums[l](x, y) / counts[l](x, y) : sums[l + 1](x / 2, y / 2);
-  return sums[0];
-}
-
 /// The DEM with the plane taken off.
 Dem detrended(const Dem& dem, const Plane& plane) {
   Dem flat = dem;
@@ -130,8 +104,8 @@ Dem detrended(const Dem& dem, const Plane& plane) {
 }
 
 /// Heights above the plane: exact at known cells, the start elsewhere.
-Grid<double> above_plane(const Dem& dem, const Plane& plane) {
-  const Raster<float> start = start_surface(detrended(dem, plane));
+Grid<double> above_plane(const Dem& dem, const Plane& plane, const Run& run) {
+  const Raster<float> start = fill_mcmd(detrended(dem, plane), {}, run);
   Grid<double> x(dem.size());
   parallel_for(0, dem.size().rows, 32, [&](int row) {
     for (int col = 0; col < dem.size().cols; ++col)
@@ -174,7 +148,7 @@ Filled solve(const Dem& dem, const Raster<float>& noise, const SplineOptions& op
              const Run& run) {
   const double X = squared_aspect(dem.spacing);
   const Plane plane = fit_plane(dem);
-  Grid<double> x = above_plane(dem, plane);
+  Grid<double> x = above_plane(dem, plane, run.part(0, 0.05));
   run.report(0.05, "solving the spline");
 
   Solved solved;

@@ -11,13 +11,42 @@ namespace {
 constexpr int row_grain = 16;
 
 /// Sums in eight lanes, so that the order of additions is fixed and the loop is still a vector one.
-DEM_CLONES double dot_span(const float* a, const float* b, Span span) {
+struct Lanes {
   double lane[8] = {};
+  double sum() const {
+    return ((lane[0] + lane[1]) + (lane[2] + lane[3])) + ((lane[4] + lane[5]) + (lane[6] + lane[7]));
+  }
+};
+
+DEM_CLONES double dot_span(const float* a, const float* b, Span span) {
+  Lanes ab;
   int x = span.begin;
   for (; x + 8 <= span.end; x += 8)
-    for (int l = 0; l < 8; ++l) lane[l] += double(a[x + l]) * double(b[x + l]);
-  for (; x < span.end; ++x) lane[0] += double(a[x]) * double(b[x]);
-  return ((lane[0] + lane[1]) + (lane[2] + lane[3])) + ((lane[4] + lane[5]) + (lane[6] + lane[7]));
+    for (int l = 0; l < 8; ++l) ab.lane[l] += double(a[x + l]) * double(b[x + l]);
+  for (; x < span.end; ++x) ab.lane[0] += double(a[x]) * double(b[x]);
+  return ab.sum();
+}
+
+/// p.q, r.p and p.p in one pass.
+DEM_CLONES void products_span(const float* p, const float* q, const float* r, Span span, double* out) {
+  Lanes pq, rp, pp;
+  int x = span.begin;
+  for (; x + 8 <= span.end; x += 8)
+    for (int l = 0; l < 8; ++l) {
+      const double at = double(p[x + l]);
+      pq.lane[l] += at * double(q[x + l]);
+      rp.lane[l] += at * double(r[x + l]);
+      pp.lane[l] += at * at;
+    }
+  for (; x < span.end; ++x) {
+    const double at = double(p[x]);
+    pq.lane[0] += at * double(q[x]);
+    rp.lane[0] += at * double(r[x]);
+    pp.lane[0] += at * at;
+  }
+  out[0] += pq.sum();
+  out[1] += rp.sum();
+  out[2] += pp.sum();
 }
 
 DEM_CLONES void direction_span(const float* s, float beta, Span span, float* p) {
@@ -80,23 +109,20 @@ void SplineSolver::next_direction(const Grid<float>& s, float beta) {
 SplineSolver::Products SplineSolver::apply() {
   const Level& level = multigrid_.finest();
   const std::vector<float> zeros(std::size_t(Grid<float>::stride_for(level.size.cols)));
-  std::vector<Products> sums(std::size_t(level.size.rows));
+  std::vector<std::array<double, 3>> sums(std::size_t(level.size.rows));
   parallel_for(0, level.size.rows, row_grain, [&](int y) {
     const auto around = rows_around(p_, y, zeros.data() + Grid<float>::margin);
-    Products& sum = sums[std::size_t(y)];
     for (const Span span : level.spans.row(y)) {
       apply_row(level.A.row(y), around.data(), level.w.empty() ? nullptr : level.w.row(y),
                 level.dinv.row(y), span, level.size.cols, q_.row(y));
-      sum.pAp += dot_span(p_.row(y), q_.row(y), span);
-      sum.rp += dot_span(r_.row(y), p_.row(y), span);
-      sum.pp += dot_span(p_.row(y), p_.row(y), span);
+      products_span(p_.row(y), q_.row(y), r_.row(y), span, sums[std::size_t(y)].data());
     }
   });
   Products total;
-  for (const Products& sum : sums) {
-    total.pAp += sum.pAp;
-    total.rp += sum.rp;
-    total.pp += sum.pp;
+  for (const auto& [pAp, rp, pp] : sums) {
+    total.pAp += pAp;
+    total.rp += rp;
+    total.pp += pp;
   }
   return total;
 }
@@ -114,13 +140,7 @@ Solved SplineSolver::solve(Grid<double>& x, const Grid<float>* f, const SolveLim
   const double n = std::max(1., double(unknowns_));
   double pAp = 0, change2 = 0, last_step = 0, last_rate = 0.5;
   residual(x, f);
-  while (unknowns_ > 0) {
-    if (dot(r_, r_) == 0) {
-      solved.estimated_error_m = 0;
-      solved.converged = true;
-      break;
-    }
-    if (solved.converged || solved.iterations == limits.max_iterations) break;
+  while (!solved.converged && solved.iterations < limits.max_iterations) {
 
     // Precondition; make the direction conjugate to the last one.
     const Grid<float>& s = multigrid_.v_cycle(r_);
@@ -129,10 +149,12 @@ Solved SplineSolver::solve(Grid<double>& x, const Grid<float>* f, const SolveLim
     const bool restarted = pAp == 0;
     pAp = products.pAp;
     if (!(pAp > 0)) {
-      // Nothing but rounding is left in this direction: start anew once.
-      if (restarted) break;
+      // Nothing is left in this direction: start anew once, to see whether anything is left at all.
       pAp = 0;
-      continue;
+      if (!restarted) continue;
+      solved.converged = true;
+      solved.estimated_error_m = 0;
+      break;
     }
     const double alpha = products.rp / pAp;
     advance(x, alpha);
@@ -155,7 +177,6 @@ Solved SplineSolver::solve(Grid<double>& x, const Grid<float>* f, const SolveLim
                "solving the spline");
   }
   solved.residual_m = std::sqrt(dot(r_, r_) / n) / multigrid_.finest().A.interior_diagonal();
-  if (unknowns_ == 0) solved.converged = true;
   return solved;
 }
 
