@@ -85,19 +85,21 @@ DEM_CLONES void weighted_chebyshev_row(const RowStencil<float>& A, const float* 
   chebyshev_step<true>(A, now, before, b, dinv, w, a, c, span, cols, next);
 }
 
+/// out = 0 where dinv is 0. A pass of its own: a choice inside the stencil's loop would be a branch.
+DEM_INLINE inline void keep_free(const float* dinv, Span span, float* out) {
+  DEM_INDEPENDENT
+  for (int x = span.begin; x < span.end; ++x) out[x] = dinv[x] != 0 ? out[x] : 0;
+}
+
 DEM_CLONES void free_residual_row(const RowStencil<float>& A, const float* const* u, const float* b,
                                   const float* dinv, const float* w, Span span, int cols, float* out) {
   const float* here = u[3];
   if (w)
-    for_span(A, u, span, cols, [=](int x, float Au) DEM_INLINE {
-      const float r = b[x] - Au - w[x] * here[x];
-      out[x] = dinv[x] != 0 ? r : 0;
-    });
+    for_span(A, u, span, cols,
+             [=](int x, float Au) DEM_INLINE { out[x] = b[x] - Au - w[x] * here[x]; });
   else
-    for_span(A, u, span, cols, [=](int x, float Au) DEM_INLINE {
-      const float r = b[x] - Au;
-      out[x] = dinv[x] != 0 ? r : 0;
-    });
+    for_span(A, u, span, cols, [=](int x, float Au) DEM_INLINE { out[x] = b[x] - Au; });
+  keep_free(dinv, span, out);
 }
 
 DEM_CLONES void first_step_row(const float* dinv, const float* b, float c, Span span, float* out) {
@@ -285,33 +287,25 @@ DEM_CLONES void apply_row(const RowStencil<float>& A, const float* const* u, con
                           const float* dinv, Span span, int cols, float* out) {
   const float* here = u[3];
   if (w)
-    for_span(A, u, span, cols, [=](int x, float Au) DEM_INLINE {
-      const float sum = Au + w[x] * here[x];
-      out[x] = dinv[x] != 0 ? sum : 0;
-    });
+    for_span(A, u, span, cols, [=](int x, float Au) DEM_INLINE { out[x] = Au + w[x] * here[x]; });
   else
-    for_span(A, u, span, cols, [=](int x, float Au) DEM_INLINE { out[x] = dinv[x] != 0 ? Au : 0; });
+    for_span(A, u, span, cols, [=](int x, float Au) DEM_INLINE { out[x] = Au; });
+  keep_free(dinv, span, out);
 }
 
 DEM_CLONES void residual_row(const RowStencil<double>& A, const double* const* x, const float* f,
                              const float* w, const float* dinv, Span span, int cols, float* out) {
-  // The difference is taken in double, then rounded; the choice is made last, so that no branch is left.
   const double* here = x[3];
   if (w)
     for_span(A, x, span, cols, [=](int i, double Ax) DEM_INLINE {
-      const float r = float(double(f[i]) - Ax - double(w[i]) * here[i]);
-      out[i] = dinv[i] != 0 ? r : 0;
+      out[i] = float(double(f[i]) - Ax - double(w[i]) * here[i]);
     });
   else if (f)
-    for_span(A, x, span, cols, [=](int i, double Ax) DEM_INLINE {
-      const float r = float(double(f[i]) - Ax);
-      out[i] = dinv[i] != 0 ? r : 0;
-    });
+    for_span(A, x, span, cols,
+             [=](int i, double Ax) DEM_INLINE { out[i] = float(double(f[i]) - Ax); });
   else
-    for_span(A, x, span, cols, [=](int i, double Ax) DEM_INLINE {
-      const float r = float(-Ax);
-      out[i] = dinv[i] != 0 ? r : 0;
-    });
+    for_span(A, x, span, cols, [=](int i, double Ax) DEM_INLINE { out[i] = float(-Ax); });
+  keep_free(dinv, span, out);
 }
 
 // ---- The coarsest grid -------------------------------------------------------------------------

@@ -155,7 +155,7 @@ Filled solve(const Dem& dem, const Raster<float>& noise, const SplineOptions& op
   {
     Data data = make_data(dem, noise, options.nugget, x);
     SplineSolver solver(springs_of(options, X, dem.size()), X, data.free, std::move(data.w));
-    const SolveLimits limits{options.tolerance_m, options.tolerance_m > 0 ? 0 : 0.01,
+    const SolveLimits limits{options.tolerance_m, options.tolerance_m > 0 ? 0 : 0.03,
                              options.max_iterations};
     solved = solver.solve(x, data.f.empty() ? nullptr : &data.f, limits, run.part(0.05, 1));
   }
