@@ -90,10 +90,14 @@ std::vector<Case> cases() {
       {"one cell in wide cells",
        masked(terrain_dem({40, 60}, {1.4, 1}), [](int x, int y) { return x == 3 && y == 3; })},
   };
-  for (Case& c : all) c.options.parameters = SplineParameters::manual;
+  for (Case& c : all) {
+    c.options.parameters = SplineParameters::manual;
+    c.options.adaptive = false;
+  }
   const auto variant = [&](std::string name, double part, auto change) {
     Case c{std::move(name), masked(terrain_dem(usual), at(part)), {}};
     c.options.parameters = SplineParameters::manual;
+    c.options.adaptive = false;
     change(c.options);
     all.push_back(c);
   };

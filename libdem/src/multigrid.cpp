@@ -85,14 +85,16 @@ DEM_CLONES void weighted_chebyshev_row(const RowStencil<float>& A, const float* 
   chebyshev_step<true>(A, now, before, b, dinv, w, a, c, span, cols, next);
 }
 
-/// out = 0 where dinv is 0. A pass of its own: a choice inside the stencil's loop would be a branch.
+/// out = 0 where dinv is 0. A pass of its own: a choice inside the stencil's loop would be a
+/// branch.
 DEM_INLINE inline void keep_free(const float* dinv, Span span, float* out) {
   DEM_INDEPENDENT
   for (int x = span.begin; x < span.end; ++x) out[x] = dinv[x] != 0 ? out[x] : 0;
 }
 
 DEM_CLONES void free_residual_row(const RowStencil<float>& A, const float* const* u, const float* b,
-                                  const float* dinv, const float* w, Span span, int cols, float* out) {
+                                  const float* dinv, const float* w, Span span, int cols,
+                                  float* out) {
   const float* here = u[3];
   if (w)
     for_span(A, u, span, cols,
@@ -157,7 +159,8 @@ Halving halving(const Level& fine, const Level& coarse) {
 
 /// Coarse rows [Y0, Y1) of P^T times the fine rows that `fine_row(y, row)` makes.
 template <class FineRow>
-void restrict_band(Size fine, Halving half, int Y0, int Y1, Grid<float>& coarse, const FineRow& fine_row) {
+void restrict_band(Size fine, Halving half, int Y0, int Y1, Grid<float>& coarse,
+                   const FineRow& fine_row) {
   const std::size_t stride = std::size_t(Grid<float>::stride_for(fine.cols));
   std::vector<float> buffers(3 * stride);
   float* here = buffers.data() + Grid<float>::margin;

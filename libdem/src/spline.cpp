@@ -144,6 +144,19 @@ Data make_data(const Dem& dem, const Raster<float>& noise, double nugget, const 
   return data;
 }
 
+/// How far around a cell its bending is read: the mean distance between known cells.
+double adaptive_sigma(const Dem& dem, const SplineOptions& options) {
+  if (options.adaptive_sigma_cells > 0) return options.adaptive_sigma_cells;
+  const double density = double(count(dem.known)) / double(dem.size().cells());
+  return std::clamp(1 / std::sqrt(density), 0.8, 16.);
+}
+
+SolveLimits coarser(SolveLimits limits, double times) {
+  limits.tolerance_m *= times;
+  limits.relative_tolerance *= times;
+  return limits;
+}
+
 Filled solve(const Dem& dem, const Raster<float>& noise, const SplineOptions& options,
              const Run& run) {
   const double X = squared_aspect(dem.spacing);
@@ -155,9 +168,30 @@ Filled solve(const Dem& dem, const Raster<float>& noise, const SplineOptions& op
   {
     Data data = make_data(dem, noise, options.nugget, x);
     SplineSolver solver(springs_of(options, X, dem.size()), X, data.free, std::move(data.w));
-    const SolveLimits limits{options.tolerance_m, options.tolerance_m > 0 ? 0 : 0.03,
-                             options.max_iterations};
-    solved = solver.solve(x, data.f.empty() ? nullptr : &data.f, limits, run.part(0.05, 1));
+    const Grid<float>* f = data.f.empty() ? nullptr : &data.f;
+    SolveLimits limits{options.tolerance_m, options.tolerance_m > 0 ? 0 : 0.03,
+                       options.max_iterations};
+    if (!options.adaptive) {
+      solved = solver.solve(x, f, limits, run.part(0.05, 1));
+    } else {
+      // Plain springs first; then twice the weights of the surface so far, and on from there.
+      SolveLimits rough = limits;
+      rough.relative_tolerance = 0.1;
+      rough.tolerance_m = 0;
+      solved = solver.solve(x, f, rough, run.part(0.05, 0.35));
+      limits.tolerance_m =
+          std::max(limits.tolerance_m, limits.relative_tolerance * solved.change_m);
+      limits.relative_tolerance = 0;
+      Tensor tensor(dem.size(), solver.finest().spans, X);
+      solver.bend_with(&tensor);
+      for (const double part : {0.35, 0.65}) {
+        tensor.estimate(x, adaptive_sigma(dem, options));
+        const int before = solved.iterations;
+        solved = solver.solve(x, f, part < 0.5 ? coarser(limits, 3) : limits,
+                              run.part(part, part + 0.3));
+        solved.iterations += before;
+      }
+    }
   }
 
   Filled filled;
@@ -192,7 +226,8 @@ std::vector<Field> fields(SplineOptions& o) {
        "rows",
        "membrane acts on waves longer than this; 0: no membrane"},
       {"L3", o.L3_rows, {0, 1000}, "rows", "third order acts on waves shorter than this; 0: none"},
-      {"fourth_order", o.fourth_order, "fourth-order accurate wavenumbers; false suits rough ground"},
+      {"fourth_order", o.fourth_order,
+       "fourth-order accurate wavenumbers; false suits rough ground"},
       {"a2", o.a2, {0, 1e9}, "", "weight of the plate (second order)"},
       {"nugget",
        o.nugget,
@@ -200,11 +235,18 @@ std::vector<Field> fields(SplineOptions& o) {
        "",
        "noise variance of the data over the springs' scale; 0: exact"},
       {"smooth_known", o.smooth_known, "with a nugget: known cells return smoothed"},
+      {"adaptive", o.adaptive,
+       "springs bend with the terrain around: ridges continue through gaps"},
+      {"adaptive_sigma",
+       o.adaptive_sigma_cells,
+       {0, 16},
+       "cells",
+       "how far around a cell its bending is read; 0: from the density of the data"},
       {"tolerance",
        o.tolerance_m,
        {0, 1e9},
        "m",
-       "stop when the estimated RMS error is below; 0: a hundredth of the change made"},
+       "stop when the estimated RMS error is below; 0: 3 % of the change made"},
       {"max_iterations", o.max_iterations, {1, 100000}, "", "stop after so many iterations"},
   };
 }

@@ -14,7 +14,8 @@ constexpr int row_grain = 16;
 struct Lanes {
   double lane[8] = {};
   double sum() const {
-    return ((lane[0] + lane[1]) + (lane[2] + lane[3])) + ((lane[4] + lane[5]) + (lane[6] + lane[7]));
+    return ((lane[0] + lane[1]) + (lane[2] + lane[3])) +
+           ((lane[4] + lane[5]) + (lane[6] + lane[7]));
   }
 };
 
@@ -28,7 +29,8 @@ DEM_CLONES double dot_span(const float* a, const float* b, Span span) {
 }
 
 /// p.q, r.p and p.p in one pass.
-DEM_CLONES void products_span(const float* p, const float* q, const float* r, Span span, double* out) {
+DEM_CLONES void products_span(const float* p, const float* q, const float* r, Span span,
+                              double* out) {
   Lanes pq, rp, pp;
   int x = span.begin;
   for (; x + 8 <= span.end; x += 8)
@@ -88,6 +90,7 @@ void SplineSolver::residual(const Grid<double>& x, const Grid<float>* f) {
                    level.w.empty() ? nullptr : level.w.row(y), level.dinv.row(y), span,
                    level.size.cols, r_.row(y));
   });
+  if (tensor_) tensor_->add(x, -1, level.dinv, r_);
 }
 
 double SplineSolver::dot(const Grid<float>& a, const Grid<float>& b) const {
@@ -110,14 +113,26 @@ SplineSolver::Products SplineSolver::apply() {
   const Level& level = multigrid_.finest();
   const std::vector<float> zeros(std::size_t(Grid<float>::stride_for(level.size.cols)));
   std::vector<std::array<double, 3>> sums(std::size_t(level.size.rows));
-  parallel_for(0, level.size.rows, row_grain, [&](int y) {
+  const auto multiply = [&](int y) {
     const auto around = rows_around(p_, y, zeros.data() + Grid<float>::margin);
-    for (const Span span : level.spans.row(y)) {
+    for (const Span span : level.spans.row(y))
       apply_row(level.A.row(y), around.data(), level.w.empty() ? nullptr : level.w.row(y),
                 level.dinv.row(y), span, level.size.cols, q_.row(y));
+  };
+  const auto sum_up = [&](int y) {
+    for (const Span span : level.spans.row(y))
       products_span(p_.row(y), q_.row(y), r_.row(y), span, sums[std::size_t(y)].data());
-    }
-  });
+  };
+  if (tensor_) {
+    parallel_for(0, level.size.rows, row_grain, multiply);
+    tensor_->add(p_, 1, level.dinv, q_);
+    parallel_for(0, level.size.rows, row_grain, sum_up);
+  } else {
+    parallel_for(0, level.size.rows, row_grain, [&](int y) {
+      multiply(y);
+      sum_up(y);
+    });
+  }
   Products total;
   for (const auto& [pAp, rp, pp] : sums) {
     total.pAp += pAp;
@@ -141,7 +156,6 @@ Solved SplineSolver::solve(Grid<double>& x, const Grid<float>* f, const SolveLim
   double pAp = 0, change2 = 0, last_step = 0, last_rate = 0.5;
   residual(x, f);
   while (!solved.converged && solved.iterations < limits.max_iterations) {
-
     // Precondition; make the direction conjugate to the last one.
     const Grid<float>& s = multigrid_.v_cycle(r_);
     next_direction(s, pAp > 0 ? float(-dot(s, q_) / pAp) : 0.f);
@@ -176,6 +190,7 @@ Solved SplineSolver::solve(Grid<double>& x, const Grid<float>* f, const SolveLim
     run.report(std::min(1., double(solved.iterations) / limits.max_iterations),
                "solving the spline");
   }
+  solved.change_m = std::sqrt(change2);
   solved.residual_m = std::sqrt(dot(r_, r_) / n) / multigrid_.finest().A.interior_diagonal();
   return solved;
 }

@@ -3,6 +3,7 @@
 
 #include "dem/run.h"
 #include "multigrid.h"
+#include "tensor.h"
 
 namespace dem {
 
@@ -15,6 +16,7 @@ struct SolveLimits {
 struct Solved {
   int iterations = 0;
   double estimated_error_m = 0;  ///< RMS over the unknowns, against the converged solution
+  double change_m = 0;           ///< RMS length of the steps made
   double residual_m = 0;         ///< RMS of the residual over the stencil's diagonal
   bool converged = false;
 };
@@ -23,6 +25,12 @@ struct Solved {
 class SplineSolver {
  public:
   SplineSolver(const Springs& springs, double X, const Mask& free, Grid<float> w);
+
+  /// Adds the tensor's springs to A, from now on (null: takes them away). It must outlive the
+  /// solves. The preconditioner stays that of the plain springs.
+  void bend_with(const Tensor* tensor) { tensor_ = tensor; }
+
+  const Level& finest() const { return multigrid_.finest(); }
 
   /// Improves x until the limits are met. `f`: right-hand side, or null for 0.
   Solved solve(Grid<double>& x, const Grid<float>* f, const SolveLimits& limits, const Run& run);
@@ -39,6 +47,7 @@ class SplineSolver {
   void advance(Grid<double>& x, double alpha) const;
 
   Multigrid multigrid_;
+  const Tensor* tensor_ = nullptr;
   std::size_t unknowns_ = 0;
   Grid<float> r_, p_, q_;
 };

@@ -18,14 +18,25 @@ enum class SplineParameters { automatic, manual };
 /// its symbol a1 K + a2 K^2 + a3 K^3 with K the squared wavenumber per row; lengths are in rows.
 struct SplineOptions {
   SplineParameters parameters = SplineParameters::automatic;
-  double L1_rows = 48;  ///< membrane for waves longer than this: a1 = (2 pi / L1)^2; 0: none
-  double L3_rows = 7;   ///< third order for waves shorter than this: a3 = (L3 / 2 pi)^2; 0: none
-  double a2 = 1;        ///< weight of the plate; 0 with L3 = 0: a pure membrane of a1 = 1
-  bool fourth_order = true;  ///< g + g^2 / 12 for the squared wavenumber; false: g, for rough ground
-  double nugget = 0;    ///< variance of the data's noise over the square of the springs' scale
-  bool smooth_known = false;  ///< with a nugget: whether known cells return smoothed
-  double tolerance_m =
-      0;  ///< stop when the estimated RMS error is below; 0: 1 % of the change made
+  /// Membrane for waves longer than this: a1 = (2 pi / L1)^2; 0: none.
+  double L1_rows = 64;
+  /// Third order for waves shorter than this: a3 = (L3 / 2 pi)^2; 0: none.
+  double L3_rows = 7;
+  /// Weight of the plate.
+  double a2 = 1;
+  /// Fourth-order accurate wavenumbers, g + g^2 / 12; false: g = 2 - 2 cos k, for rough ground.
+  bool fourth_order = true;
+  /// Variance of the data's noise over that of the springs; 0: known cells are met exactly.
+  double nugget = 0;
+  /// With a nugget: whether known cells return smoothed.
+  bool smooth_known = false;
+  /// Second-order springs bend with the terrain: ridges and valleys continue through gaps.
+  bool adaptive = true;
+  /// How far around a cell its bending is read; 0: the mean distance between known cells.
+  double adaptive_sigma_cells = 0;
+  /// Stop when the estimated RMS error against the converged solution is below; 0: 3 % of the
+  /// change.
+  double tolerance_m = 0;
   int max_iterations = 100;
 };
 std::vector<Field> fields(SplineOptions& options);
