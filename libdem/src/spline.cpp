@@ -9,6 +9,7 @@
 
 #include "dem/mcmd.h"
 #include "parallel.h"
+#include "spline_parameters.h"
 #include "spline_solver.h"
 
 namespace dem {
@@ -103,9 +104,10 @@ Dem detrended(const Dem& dem, const Plane& plane) {
   return flat;
 }
 
-/// Heights above the plane: exact at known cells, the start elsewhere.
-Grid<double> above_plane(const Dem& dem, const Plane& plane, const Run& run) {
-  const Raster<float> start = fill_mcmd(detrended(dem, plane), {}, run);
+/// Heights above the plane: exact at known cells, the start elsewhere. `flat`: the DEM without its
+/// plane.
+Grid<double> above_plane(const Dem& dem, const Dem& flat, const Plane& plane, const Run& run) {
+  const Raster<float> start = fill_mcmd(flat, {}, run);
   Grid<double> x(dem.size());
   parallel_for(0, dem.size().rows, 32, [&](int row) {
     for (int col = 0; col < dem.size().cols; ++col)
@@ -144,9 +146,12 @@ Data make_data(const Dem& dem, const Raster<float>& noise, double nugget, const 
   return data;
 }
 
-/// How far around a cell its bending is read: the mean distance between known cells.
-double adaptive_sigma(const Dem& dem, const SplineOptions& options) {
+/// How far around a cell its bending is read: the mean distance between known cells; beside gaps,
+/// three cells.
+double adaptive_sigma(const Dem& dem, const SplineOptions& options, Layout layout) {
   if (options.adaptive_sigma_cells > 0) return options.adaptive_sigma_cells;
+  if (layout == Layout::contours) return 1.5;
+  if (layout == Layout::clustered) return 3;
   const double density = double(count(dem.known)) / double(dem.size().cells());
   return std::clamp(1 / std::sqrt(density), 0.8, 16.);
 }
@@ -157,12 +162,27 @@ SolveLimits coarser(SolveLimits limits, double times) {
   return limits;
 }
 
-Filled solve(const Dem& dem, const Raster<float>& noise, const SplineOptions& options,
-             const Run& run) {
+Filled solve(const Dem& dem, const Raster<float>& noise, SplineOptions options, const Run& run) {
   const double X = squared_aspect(dem.spacing);
   const Plane plane = fit_plane(dem);
-  Grid<double> x = above_plane(dem, plane, run.part(0, 0.05));
-  run.report(0.05, "solving the spline");
+  ChosenSprings chosen;
+  Grid<double> x;
+  {
+    const Dem flat = detrended(dem, plane);
+    x = above_plane(dem, flat, plane, run.part(0, 0.05));
+    if (options.parameters == SplineParameters::automatic || options.adaptive) {
+      const auto distance = distances_to_known(dem.known);
+      chosen.layout = layout_of(dem, distance);
+      if (options.parameters == SplineParameters::automatic)
+        chosen = choose_springs(flat, chosen.layout, distance, X, run.part(0.05, 0.4));
+    }
+  }
+  if (options.parameters == SplineParameters::automatic) {
+    options.L1_rows = chosen.L1_rows;
+    options.L3_rows = chosen.L3_rows;
+    options.fourth_order = chosen.fourth_order;
+    if (options.nugget == 0) options.nugget = chosen.nugget;
+  }
 
   Solved solved;
   {
@@ -172,23 +192,23 @@ Filled solve(const Dem& dem, const Raster<float>& noise, const SplineOptions& op
     SolveLimits limits{options.tolerance_m, options.tolerance_m > 0 ? 0 : 0.03,
                        options.max_iterations};
     if (!options.adaptive) {
-      solved = solver.solve(x, f, limits, run.part(0.05, 1));
+      solved = solver.solve(x, f, limits, run.part(0.4, 1));
     } else {
       // Plain springs first; then twice the weights of the surface so far, and on from there.
       SolveLimits rough = limits;
       rough.relative_tolerance = 0.1;
       rough.tolerance_m = 0;
-      solved = solver.solve(x, f, rough, run.part(0.05, 0.35));
+      solved = solver.solve(x, f, rough, run.part(0.4, 0.6));
       limits.tolerance_m =
           std::max(limits.tolerance_m, limits.relative_tolerance * solved.change_m);
       limits.relative_tolerance = 0;
       Tensor tensor(dem.size(), solver.finest().spans, X);
       solver.bend_with(&tensor);
-      for (const double part : {0.35, 0.65}) {
-        tensor.estimate(x, adaptive_sigma(dem, options));
+      for (const double part : {0.6, 0.8}) {
+        tensor.estimate(x, adaptive_sigma(dem, options, chosen.layout));
         const int before = solved.iterations;
-        solved = solver.solve(x, f, part < 0.5 ? coarser(limits, 3) : limits,
-                              run.part(part, part + 0.3));
+        solved = solver.solve(x, f, part < 0.7 ? coarser(limits, 3) : limits,
+                              run.part(part, part + 0.2));
         solved.iterations += before;
       }
     }
@@ -208,7 +228,12 @@ Filled solve(const Dem& dem, const Raster<float>& noise, const SplineOptions& op
                    {"residual", solved.residual_m, "m"},
                    {"L1", options.L1_rows, "rows"},
                    {"L3", options.L3_rows, "rows"},
+                   {"fourth_order", options.fourth_order ? 1. : 0., ""},
                    {"nugget", options.nugget, ""}};
+  if (chosen.hidden_cells > 0) {
+    filled.report.push_back({"hidden_cells", double(chosen.hidden_cells), ""});
+    filled.report.push_back({"hidden_rmse", chosen.hidden_rmse_m, "m"});
+  }
   return filled;
 }
 
@@ -220,14 +245,14 @@ std::vector<Field> fields(SplineOptions& o) {
        o.parameters,
        {"automatic", "manual"},
        "L1 and L3 from the DEM, or as set here"},
-      {"L1",
-       o.L1_rows,
-       {0, 1e9},
+      {"L1", o.L1_rows, {0, 1e9}, "rows", "manual: membrane for waves longer than this; 0: none"},
+      {"L3",
+       o.L3_rows,
+       {0, 1000},
        "rows",
-       "membrane acts on waves longer than this; 0: no membrane"},
-      {"L3", o.L3_rows, {0, 1000}, "rows", "third order acts on waves shorter than this; 0: none"},
+       "manual: third order for waves shorter than this; 0: none"},
       {"fourth_order", o.fourth_order,
-       "fourth-order accurate wavenumbers; false suits rough ground"},
+       "manual: fourth-order accurate wavenumbers; false suits rough ground"},
       {"a2", o.a2, {0, 1e9}, "", "weight of the plate (second order)"},
       {"nugget",
        o.nugget,
@@ -264,6 +289,12 @@ Filled fill_spline(const Dem& dem, const Raster<float>& noise, const SplineOptio
     throw std::invalid_argument(fmt::format("noise is {} x {}; must be {} x {} as the dem",
                                             noise.cols(), noise.rows(), dem.size().cols,
                                             dem.size().rows));
+  const SplineOptions usual;
+  if (options.parameters == SplineParameters::automatic &&
+      (options.L1_rows != usual.L1_rows || options.L3_rows != usual.L3_rows ||
+       options.fourth_order != usual.fourth_order))
+    throw std::invalid_argument(
+        "L1, L3 and fourth_order are chosen from the DEM; to set them, set parameters = manual");
   return with_threads(run.threads, [&] { return solve(dem, noise, options, run); });
 }
 
