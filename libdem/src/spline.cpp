@@ -10,6 +10,7 @@
 #include "dem/mcmd.h"
 #include "parallel.h"
 #include "spline_parameters.h"
+#include "spline_sample.h"
 #include "spline_solver.h"
 
 namespace dem {
@@ -156,10 +157,127 @@ double adaptive_sigma(const Dem& dem, const SplineOptions& options, Layout layou
   return std::clamp(1 / std::sqrt(density), 0.8, 16.);
 }
 
+bool all_whole_metres(const Dem& dem) {
+  bool whole = true;
+  for_known(dem, [&](int, int, double z) { whole = whole && z == std::floor(z); });
+  return whole;
+}
+
+// ---- Uncertainty
+// ---------------------------------------------------------------------------------
+
+/// Random surfaces that are 0 at the data, in units of the springs' scale.
+class Simulation {
+ public:
+  Simulation(SplineSolver& solver, const Springs& springs, std::uint64_t seed)
+      : solver_(solver), springs_(springs), seed_(seed) {}
+
+  Grid<double> draw(int index, const Run& run) {
+    const Level& level = solver_.finest();
+    const Grid<float> f = spring_noise(springs_, level.size, level.w, seed_, index);
+    Grid<double> d(level.size);
+    solver_.solve(d, &f, {0, 0.03, 100}, run);
+    return d;
+  }
+
+ private:
+  SplineSolver& solver_;
+  const Springs& springs_;
+  std::uint64_t seed_;
+};
+
+/// The scale of the springs: E(z) = n s^2 for a surface drawn from them and met at n cells.
+double spring_scale(const Springs& springs, const Grid<double>& x, const Dem& dem) {
+  return std::sqrt(spring_energy(springs, x) / double(count(dem.known)));
+}
+
+struct Uncertainty {
+  double scale = 1;     ///< sigma = scale * root of the law, with rounding of the data added
+  double rounding = 0;  ///< variance of whole metres
+  DistanceLaw law;
+  double sigma(double fifths) const {
+    return std::sqrt(scale * scale * law.variance(fifths) + rounding);
+  }
+};
+
+/// Widens or narrows the scale until 68 % of the hidden cells lie within one sigma. Returns the
+/// parts within one and two.
+std::pair<double, double> calibrate(Uncertainty& u, const std::vector<HeldOut>& cells) {
+  if (cells.empty()) return {0, 0};
+  std::vector<double> ratio;
+  for (const HeldOut& c : cells) ratio.push_back(std::abs(double(c.error_m)) / u.sigma(c.distance));
+  const auto at = ratio.begin() + std::ptrdiff_t(0.72 * double(ratio.size()));
+  std::ranges::nth_element(ratio, at);
+  u.scale *= std::max(*at, 0.05);
+  double one = 0, two = 0;
+  for (const HeldOut& c : cells) {
+    const double sigmas = std::abs(double(c.error_m)) / u.sigma(c.distance);
+    one += sigmas <= 1;
+    two += sigmas <= 2;
+  }
+  return {one / double(cells.size()), two / double(cells.size())};
+}
+
+/// By default the solve's own error adds well under 1 % to the RMSE: 5 % of the error of the hidden
+/// cells, or 3 % of the change made where no cell was hidden.
+SolveLimits limits_of(const SplineOptions& options, const ChosenSprings& chosen) {
+  if (options.tolerance_m > 0) return {options.tolerance_m, 0, options.max_iterations};
+  if (chosen.hidden_rmse_m > 0) return {0.05 * chosen.hidden_rmse_m, 0.01, options.max_iterations};
+  return {0, 0.03, options.max_iterations};
+}
+
 SolveLimits coarser(SolveLimits limits, double times) {
   limits.tolerance_m *= times;
   limits.relative_tolerance *= times;
   return limits;
+}
+
+/// Sigma and the realisation asked for: the latter is added to x.
+void sample(const Dem& dem, const SplineOptions& options, const ChosenSprings& chosen,
+            const Springs& springs, SplineSolver& solver, Grid<double>& x, Filled& filled,
+            const Run& run) {
+  Simulation simulation(solver, springs, options.seed);
+  const auto distance = distances_to_known(dem.known);
+  Uncertainty uncertainty;
+  uncertainty.scale = spring_scale(springs, x, dem);
+  uncertainty.rounding = all_whole_metres(dem) ? 1 / 12. : 0;
+
+  const bool simulate = options.sigma == SplineSigma::simulation;
+  const int draws = simulate ? options.realisations : 2;
+  Raster<float> squares(simulate ? dem.size() : Size{});
+  for (int k = 1; k <= draws; ++k) {
+    const Grid<double> d = simulation.draw(k, run.part((k - 1.) / draws, double(k) / draws));
+    uncertainty.law.add(d, distance);
+    if (simulate)
+      parallel_for(0, dem.size().rows, 32, [&](int row) {
+        for (int col = 0; col < dem.size().cols; ++col)
+          squares(col, row) += float(d.row(row)[col] * d.row(row)[col]);
+      });
+  }
+  uncertainty.law.finish();
+  const auto [one, two] = calibrate(uncertainty, chosen.held_out);
+  filled.report.push_back({"scale", uncertainty.scale, "m"});
+  filled.report.push_back({"inside_1_sigma", one, ""});
+  filled.report.push_back({"inside_2_sigma", two, ""});
+
+  if (options.sigma != SplineSigma::none) {
+    filled.sigma = Raster<float>(dem.size());
+    const double scale2 = uncertainty.scale * uncertainty.scale;
+    parallel_for(0, dem.size().rows, 32, [&](int row) {
+      for (int col = 0; col < dem.size().cols; ++col) {
+        if (dem.known(col, row)) continue;
+        filled.sigma(col, row) = float(
+            simulate ? std::sqrt(scale2 * double(squares(col, row)) / draws + uncertainty.rounding)
+                     : uncertainty.sigma(distance(col, row)));
+      }
+    });
+  }
+  if (options.realisation > 0) {
+    const Grid<double> d = simulation.draw(options.realisation, run);
+    for (int row = 0; row < dem.size().rows; ++row)
+      for (int col = 0; col < dem.size().cols; ++col)
+        if (!dem.known(col, row)) x.row(row)[col] += uncertainty.scale * d.row(row)[col];
+  }
 }
 
 Filled solve(const Dem& dem, const Raster<float>& noise, SplineOptions options, const Run& run) {
@@ -185,12 +303,13 @@ Filled solve(const Dem& dem, const Raster<float>& noise, SplineOptions options, 
   }
 
   Solved solved;
+  Filled filled;
+  const Springs springs = springs_of(options, X, dem.size());
   {
     Data data = make_data(dem, noise, options.nugget, x);
-    SplineSolver solver(springs_of(options, X, dem.size()), X, data.free, std::move(data.w));
+    SplineSolver solver(springs, X, data.free, std::move(data.w));
     const Grid<float>* f = data.f.empty() ? nullptr : &data.f;
-    SolveLimits limits{options.tolerance_m, options.tolerance_m > 0 ? 0 : 0.03,
-                       options.max_iterations};
+    const SolveLimits limits = limits_of(options, chosen);
     if (!options.adaptive) {
       solved = solver.solve(x, f, limits, run.part(0.4, 1));
     } else {
@@ -199,22 +318,24 @@ Filled solve(const Dem& dem, const Raster<float>& noise, SplineOptions options, 
       rough.relative_tolerance = 0.1;
       rough.tolerance_m = 0;
       solved = solver.solve(x, f, rough, run.part(0.4, 0.6));
-      limits.tolerance_m =
-          std::max(limits.tolerance_m, limits.relative_tolerance * solved.change_m);
-      limits.relative_tolerance = 0;
+      const SolveLimits fine{
+          std::max(limits.tolerance_m, limits.relative_tolerance * solved.change_m), 0,
+          options.max_iterations};
       Tensor tensor(dem.size(), solver.finest().spans, X);
       solver.bend_with(&tensor);
       for (const double part : {0.6, 0.8}) {
         tensor.estimate(x, adaptive_sigma(dem, options, chosen.layout));
         const int before = solved.iterations;
-        solved = solver.solve(x, f, part < 0.7 ? coarser(limits, 3) : limits,
-                              run.part(part, part + 0.2));
+        solved =
+            solver.solve(x, f, part < 0.7 ? coarser(fine, 3) : fine, run.part(part, part + 0.2));
         solved.iterations += before;
       }
+      solver.bend_with(nullptr);
     }
+    if (options.sigma != SplineSigma::none || options.realisation > 0)
+      sample(dem, options, chosen, springs, solver, x, filled, run.part(0.9, 1));
   }
 
-  Filled filled;
   filled.z = Raster<float>(dem.size());
   parallel_for(0, dem.size().rows, 32, [&](int row) {
     for (int col = 0; col < dem.size().cols; ++col)
@@ -222,14 +343,14 @@ Filled solve(const Dem& dem, const Raster<float>& noise, SplineOptions options, 
                                ? dem.z(col, row)
                                : float(x.row(row)[col] + plane.at(col, row));
   });
-  filled.report = {{"iterations", double(solved.iterations), ""},
-                   {"converged", solved.converged ? 1. : 0., ""},
-                   {"estimated_error", solved.estimated_error_m, "m"},
-                   {"residual", solved.residual_m, "m"},
-                   {"L1", options.L1_rows, "rows"},
-                   {"L3", options.L3_rows, "rows"},
-                   {"fourth_order", options.fourth_order ? 1. : 0., ""},
-                   {"nugget", options.nugget, ""}};
+  filled.report.insert(filled.report.begin(), {{"iterations", double(solved.iterations), ""},
+                                               {"converged", solved.converged ? 1. : 0., ""},
+                                               {"estimated_error", solved.estimated_error_m, "m"},
+                                               {"residual", solved.residual_m, "m"},
+                                               {"L1", options.L1_rows, "rows"},
+                                               {"L3", options.L3_rows, "rows"},
+                                               {"fourth_order", options.fourth_order ? 1. : 0., ""},
+                                               {"nugget", options.nugget, ""}});
   if (chosen.hidden_cells > 0) {
     filled.report.push_back({"hidden_cells", double(chosen.hidden_cells), ""});
     filled.report.push_back({"hidden_rmse", chosen.hidden_rmse_m, "m"});
@@ -273,6 +394,21 @@ std::vector<Field> fields(SplineOptions& o) {
        "m",
        "stop when the estimated RMS error is below; 0: 3 % of the change made"},
       {"max_iterations", o.max_iterations, {1, 100000}, "", "stop after so many iterations"},
+      {"sigma",
+       o.sigma,
+       {"none", "law", "simulation"},
+       "standard deviation of each cell: by its distance to data, or by random surfaces"},
+      {"realisations",
+       o.realisations,
+       {2, 1000},
+       "",
+       "random surfaces that sigma = simulation takes"},
+      {"realisation",
+       o.realisation,
+       {0, 1000000},
+       "",
+       "return the k-th random surface through the data; 0: the spline itself"},
+      {"seed", o.seed, "seed of the random surfaces"},
   };
 }
 

@@ -52,6 +52,17 @@ void hide(Trial& trial, int col, int row) {
   trial.dem.z(col, row) = 0;
 }
 
+/// The hidden cells' errors as they are now.
+std::vector<HeldOut> held_out(const std::vector<Trial>& trials) {
+  std::vector<HeldOut> all;
+  for (const Trial& t : trials) {
+    const auto distance = distances_to_known(t.dem.known);
+    for (const Hidden& h : t.hidden)
+      all.push_back({float(t.x.row(h.row)[h.col] - h.z), distance(h.col, h.row)});
+  }
+  return all;
+}
+
 /// Squared error of the hidden cells under one candidate, in every trial.
 void try_springs(std::vector<Trial>& trials, const Candidate& candidate, double X) {
   parallel_for(0, int(trials.size()), 1, [&](int t) {
@@ -132,6 +143,7 @@ ChosenSprings choose_scattered(const Dem& dem, double X, const Run& run) {
     chosen.L3_rows = row.springs.L3;
     chosen.fourth_order = row.springs.fourth_order;
     chosen.hidden_rmse_m = rmse;
+    chosen.held_out = held_out(trials);
   }
   return chosen;
 }
@@ -283,6 +295,7 @@ ChosenSprings choose_clustered(const Dem& dem, const Raster<std::uint16_t>& dist
     double squares = 0;
     for (const Trial& t : trials) squares += t.square_error;
     chosen.hidden_rmse_m = std::sqrt(squares / chosen.hidden_cells);
+    chosen.held_out = held_out(trials);
   };
   for (const double L1 : {64., 128., 0., 32., 16.}) attempt({L1, usual.L3, usual.fourth_order});
   attempt({8, 0, false});
@@ -425,7 +438,7 @@ ChosenSprings choose_springs(const Dem& dem, Layout layout, const Raster<std::ui
       // A line is only as exact as the cells it runs through: it pulls as hard as the springs do at
       // a wavelength of 3.5 cells.
       const double K = std::pow(2 * std::numbers::pi / 3.5, 2);
-      return {64, 0, true, 1 / (K * K), Layout::contours, 0, 0};
+      return {64, 0, true, 1 / (K * K), Layout::contours, 0, 0, {}};
     }
   }
   return {};

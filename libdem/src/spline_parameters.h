@@ -10,6 +10,12 @@ namespace dem {
 /// How the known cells lie.
 enum class Layout { scattered, clustered, contours };
 
+/// The error of one hidden cell, and how far it was from data (fifths of a cell).
+struct HeldOut {
+  float error_m;
+  std::uint16_t distance;
+};
+
 struct ChosenSprings {
   double L1_rows = 64, L3_rows = 7;
   bool fourth_order = true;
@@ -17,6 +23,7 @@ struct ChosenSprings {
   Layout layout = Layout::scattered;
   double hidden_rmse_m = 0;  ///< of the cells that were hidden, with the springs chosen
   int hidden_cells = 0;
+  std::vector<HeldOut> held_out;  ///< the same, one by one
 };
 
 /// Distances (chamfer 5-7-11, in fifths of a cell, at most 65535) of all cells to the nearest known
