@@ -12,6 +12,7 @@
 #include "multigrid.h"
 #include "random.h"
 #include "springs.h"
+#include "tensor.h"
 
 namespace dem {
 namespace {
@@ -274,6 +275,287 @@ INSTANTIATE_TEST_SUITE_P(FillSpline, EveryMask, testing::ValuesIn(cases()), [](c
     if (std::isalnum(static_cast<unsigned char>(c))) name += c;
   return name;
 });
+
+// ---- Whole surfaces, default options
+// --------------------------------------------------------------
+
+Dem random_tenth(Size size) {
+  return masked(terrain_dem(size), [](int x, int y) { return chance(0.1, x, y); });
+}
+
+TEST(FillSpline, ReturnsTheSameBitsForAnyNumberOfThreads) {
+  SplineOptions options;
+  options.sigma = SplineSigma::law;
+  for (const Dem& dem :
+       {random_tenth({211, 190}),
+        masked(terrain_dem({200, 230}), [](int x, int y) { return x % 90 < 40 || y % 70 < 30; })}) {
+    const Filled one = fill_spline(dem, options, {1, {}});
+    for (const int threads : {2, 3, 7}) {
+      const Filled many = fill_spline(dem, options, {threads, {}});
+      EXPECT_TRUE(many.z == one.z) << threads;
+      EXPECT_TRUE(many.sigma == one.sigma) << threads;
+    }
+  }
+}
+
+TEST(FillSpline, ReturnsAConstantExactly) {
+  Dem dem = random_tenth({70, 50});
+  for (float& z : dem.z.cells()) z = -13.7f;
+  const Filled filled = fill_spline(dem);
+  EXPECT_THAT(filled.z.cells(), testing::Each(-13.7f));
+}
+
+TEST(FillSpline, ReturnsAPlane) {
+  Dem dem = random_tenth({150, 120});
+  dem.spacing = {1.4, 1};
+  const auto plane = [](int x, int y) { return float(-40 + 0.75 * x - 1.25 * y); };
+  for (int y = 0; y < 120; ++y)
+    for (int x = 0; x < 150; ++x) dem.z(x, y) = plane(x, y);
+  const Filled filled = fill_spline(dem);
+  for (int y = 0; y < 120; ++y)
+    for (int x = 0; x < 150; ++x) ASSERT_NEAR(filled.z(x, y), plane(x, y), 1e-4) << x << ", " << y;
+}
+
+TEST(FillSpline, ReturnsACompleteDemAsItIs) {
+  const Dem dem = terrain_dem({40, 30});
+  const Filled filled = fill_spline(dem);
+  EXPECT_TRUE(filled.z == dem.z);
+  EXPECT_EQ(figure(filled, "iterations"), 0);
+}
+
+TEST(FillSpline, FillsASingleCellDem) {
+  Dem dem{Raster<float>({1, 1}, 5), Mask({1, 1}, 1), {}, {}};
+  EXPECT_EQ(fill_spline(dem).z(0, 0), 5);
+}
+
+TEST(FillSpline, LetsNoNanSpread) {
+  // masked() hides unknown cells behind NaN.
+  for (const double part : {0.001, 0.1, 0.9}) {
+    const Dem dem = masked(terrain_dem({90, 80}),
+                           [&](int x, int y) { return chance(part, x, y) || x + y == 0; });
+    const Filled filled = fill_spline(dem);
+    for (const float z : filled.z.cells()) ASSERT_TRUE(std::isfinite(z)) << part;
+  }
+}
+
+TEST(FillSpline, KeepsAnOutlierLocal) {
+  SplineOptions options;
+  options.parameters = SplineParameters::manual;
+  options.adaptive = false;
+  options.tolerance_m = 1e-3;
+  const Dem clean = masked(terrain_dem({160, 160}),
+                           [](int x, int y) { return chance(0.3, x, y) || (x == 80 && y == 80); });
+  Dem dirty = clean;
+  dirty.z(80, 80) = 1e6f;
+  const Filled without = fill_spline(clean, options), with = fill_spline(dirty, options);
+  EXPECT_EQ(figure(with, "converged"), 1);
+  // Between known cells at every other place, the influence falls by half each cell or two: forty
+  // cells away less than a millionth of the outlier is left.
+  for (int y = 0; y < 160; ++y)
+    for (int x = 0; x < 160; ++x)
+      if (std::hypot(x - 80, y - 80) > 40)
+        ASSERT_NEAR(with.z(x, y), without.z(x, y), 1) << x << ", " << y;
+}
+
+TEST(Tensor, IsTheGradientOfItsEnergy) {
+  // Symmetric, and with the plate it stays positive: both read off the whole matrix of a small
+  // grid.
+  const Size size{13, 11};
+  const int n = int(size.cells());
+  for (const double X : {1., 1.9}) {
+    Mask free(size, 1);
+    const Springs plate = terrain_springs(1e-9, 1, 0, X, false);
+    Multigrid grids(plate, X, free, {});
+    Grid<double> z(size);
+    for (int y = 0; y < size.rows; ++y)
+      for (int x = 0; x < size.cols; ++x) z.row(y)[x] = double(terrain(x, y));
+    Tensor tensor(size, grids.finest().spans, X);
+    tensor.estimate(z, 1.2);
+    Eigen::MatrixXd T(n, n), A(n, n);
+    for (int i = 0; i < n; ++i) {
+      Grid<double> unit(size);
+      Grid<float> out(size);
+      unit.row(i / size.cols)[i % size.cols] = 1;
+      tensor.add(unit, 1, grids.finest().dinv, out);
+      for (int j = 0; j < n; ++j) {
+        const int x = j % size.cols, y = j / size.cols;
+        T(i, j) = double(out.row(y)[x]);
+        const int dx = i % size.cols - x, dy = i / size.cols - y;
+        A(i, j) = std::abs(dx) + std::abs(dy) <= 3 ? grids.finest().A.at(x, y, dx, dy) : 0;
+      }
+    }
+    EXPECT_GT(T.norm(), 1);
+    EXPECT_LT((T - T.transpose()).norm(), 1e-5 * T.norm());
+    const Eigen::MatrixXd sum = (A + T + (A + T).transpose()) / 2;
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(sum);
+    EXPECT_GT(eigen.eigenvalues()[0], -1e-5 * eigen.eigenvalues()[n - 1]);
+  }
+}
+
+TEST(FillSpline, BendingSpringsFollowARidgeThroughAGap) {
+  // A straight diagonal ridge, interrupted by a gap.
+  const Size size{120, 120};
+  Dem truth{Raster<float>(size), Mask(size, 1), {}, {}};
+  for (int y = 0; y < size.rows; ++y)
+    for (int x = 0; x < size.cols; ++x)
+      truth.z(x, y) = float(300 * std::exp(-std::abs(x - y) / 6.));
+  const Dem dem = masked(truth, [](int x, int y) { return std::hypot(x - 60, y - 60) > 18; });
+  const auto rmse = [&](bool adaptive) {
+    SplineOptions options;
+    options.parameters = SplineParameters::manual;
+    options.adaptive = adaptive;
+    const Filled filled = fill_spline(dem, options);
+    double sum = 0, n = 0;
+    for (int y = 0; y < size.rows; ++y)
+      for (int x = 0; x < size.cols; ++x)
+        if (!dem.known(x, y)) sum += std::pow(filled.z(x, y) - truth.z(x, y), 2), ++n;
+    return std::sqrt(sum / n);
+  };
+  EXPECT_LT(rmse(true), 0.8 * rmse(false));
+}
+
+TEST(FillSpline, SmoothsKnownCellsOnlyWhenAsked) {
+  SplineOptions options;
+  options.parameters = SplineParameters::manual;
+  options.nugget = 5;
+  const Dem dem = random_tenth({60, 60});
+  const Filled kept = fill_spline(dem, options);
+  options.smooth_known = true;
+  const Filled smoothed = fill_spline(dem, options);
+  int changed = 0;
+  for (int y = 0; y < 60; ++y)
+    for (int x = 0; x < 60; ++x) {
+      if (!dem.known(x, y)) continue;
+      ASSERT_EQ(kept.z(x, y), dem.z(x, y));
+      changed += smoothed.z(x, y) != dem.z(x, y);
+    }
+  EXPECT_GT(changed, 100);
+}
+
+TEST(FillSpline, AZeroNoiseMakesACellExact) {
+  SplineOptions options;
+  options.parameters = SplineParameters::manual;
+  options.nugget = 5;
+  options.smooth_known = true;
+  const Dem dem = random_tenth({60, 60});
+  Raster<float> noise(dem.size(), 1);
+  for (int y = 0; y < 30; ++y)
+    for (int x = 0; x < 60; ++x) noise(x, y) = 0;
+  const Filled filled = fill_spline(dem, noise, options);
+  for (int y = 0; y < 30; ++y)
+    for (int x = 0; x < 60; ++x)
+      if (dem.known(x, y)) ASSERT_NEAR(filled.z(x, y), dem.z(x, y), 1e-4);
+}
+
+// ---- Uncertainty
+// ------------------------------------------------------------------------------------
+
+TEST(SplineSigma, IsZeroAtDataAndGrowsAwayFromThem) {
+  SplineOptions options;
+  for (const SplineSigma kind : {SplineSigma::law, SplineSigma::simulation}) {
+    options.sigma = kind;
+    const Dem dem = masked(terrain_dem({120, 100}), [](int x, int) { return x < 20 || x > 100; });
+    const Filled filled = fill_spline(dem, options);
+    for (int x = 0; x < 20; ++x) ASSERT_EQ(filled.sigma(x, 50), 0);
+    for (int x = 20; x <= 100; ++x) ASSERT_GT(filled.sigma(x, 50), 0) << x;
+    EXPECT_GT(filled.sigma(60, 50), 3 * filled.sigma(21, 50));
+  }
+}
+
+TEST(SplineSigma, IsTheSpreadOfDrawsFromTheSpringsWhenTheTruthIsOne) {
+  // Truth drawn from the springs themselves: sigma must be right without any calibration.
+  // Parameters by hand, so that no cell is hidden.
+  SplineOptions draw;
+  draw.parameters = SplineParameters::manual;
+  draw.adaptive = false;
+  draw.L1_rows = 40;
+  draw.realisation = 77;
+  Dem seed =
+      masked(terrain_dem({150, 150}), [](int x, int y) { return x % 149 == 0 && y % 149 == 0; });
+  const Dem truth{fill_spline(seed, draw).z, Mask({150, 150}, 1), {}, {}};
+  const Dem dem = masked(truth, [](int x, int y) { return chance(0.05, x, y); });
+  SplineOptions options = draw;
+  options.realisation = 0;
+  options.sigma = SplineSigma::simulation;
+  const Filled filled = fill_spline(dem, options);
+  double one = 0, two = 0, n = 0;
+  for (int y = 0; y < 150; ++y)
+    for (int x = 0; x < 150; ++x) {
+      if (dem.known(x, y)) continue;
+      const double sigmas =
+          std::abs(double(filled.z(x, y)) - double(truth.z(x, y))) / double(filled.sigma(x, y));
+      one += sigmas < 1;
+      two += sigmas < 2;
+      ++n;
+    }
+  // 0.68 and 0.95 for a normal law; neighbours are alike, so some hundred independent errors: +-
+  // 0.05.
+  EXPECT_NEAR(one / n, 0.68, 0.06);
+  EXPECT_NEAR(two / n, 0.95, 0.04);
+}
+
+TEST(SplineRealisation, MeetsTheDataAndIsRougherThanTheSpline) {
+  const Dem dem = random_tenth({120, 100});
+  SplineOptions options;
+  const Filled spline = fill_spline(dem, options);
+  options.realisation = 1;
+  const Filled first = fill_spline(dem, options);
+  options.realisation = 2;
+  const Filled second = fill_spline(dem, options);
+  const auto roughness = [](const Raster<float>& z) {
+    double sum = 0;
+    for (int y = 0; y < z.rows(); ++y)
+      for (int x = 1; x + 1 < z.cols(); ++x)
+        sum += std::pow(z(x - 1, y) - 2 * z(x, y) + z(x + 1, y), 2);
+    return sum;
+  };
+  for (int y = 0; y < 100; ++y)
+    for (int x = 0; x < 120; ++x)
+      if (dem.known(x, y)) ASSERT_EQ(first.z(x, y), dem.z(x, y));
+  EXPECT_GT(roughness(first.z), 1.1 * roughness(spline.z));
+  EXPECT_FALSE(first.z == second.z);
+}
+
+// ---- Choices and errors
+// --------------------------------------------------------------------------------
+
+TEST(SplineParametersChosen, FollowTheGround) {
+  // Noise from cell to cell wants springs that tie only neighbours; rolling hills want smooth ones.
+  const Size size{160, 160};
+  Dem noise{Raster<float>(size), Mask(size, 1), {}, {}}, hills = noise;
+  for (int y = 0; y < size.rows; ++y)
+    for (int x = 0; x < size.cols; ++x) {
+      noise.z(x, y) = float(20 * signed_uniform(random_bits(3, 0, x, y)));
+      hills.z(x, y) = float(100 * std::sin(x * 0.11) * std::cos(y * 0.13));
+    }
+  const auto at = [](int x, int y) { return chance(0.3, x, y); };
+  EXPECT_LE(figure(fill_spline(masked(noise, at)), "L1"), 6);
+  EXPECT_GT(figure(fill_spline(masked(hills, at)), "L3"), 0);
+}
+
+TEST(SplineOptionsCheck, RefusesLengthsThatWouldBeIgnored) {
+  SplineOptions options;
+  options.L1_rows = 30;
+  EXPECT_THROW(fill_spline(terrain_dem({5, 5}), options), std::invalid_argument);
+  options.parameters = SplineParameters::manual;
+  EXPECT_NO_THROW(fill_spline(terrain_dem({5, 5}), options));
+}
+
+TEST(SplineOptionsCheck, RefusesBadInput) {
+  Dem dem = terrain_dem({5, 5});
+  dem.spacing.dx_m = 0;
+  EXPECT_THROW(fill_spline(dem), std::invalid_argument);
+  dem.spacing.dx_m = 1;
+  EXPECT_THROW(fill_spline(dem, Raster<float>({4, 5}), {}), std::invalid_argument);
+  dem.known = Mask(dem.size());
+  EXPECT_THROW(fill_spline(dem), std::invalid_argument);
+}
+
+TEST(FillSpline, StopsWhenAsked) {
+  dem::Run run;
+  run.progress = [](double part, std::string_view) { return part < 0.5; };
+  EXPECT_THROW(fill_spline(random_tenth({80, 80}), {}, run), Cancelled);
+}
 
 }  // namespace
 }  // namespace dem

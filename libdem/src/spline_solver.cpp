@@ -179,7 +179,7 @@ Solved SplineSolver::solve(Grid<double>& x, const Grid<float>* f, const SolveLim
     const double step = std::abs(alpha) * std::sqrt(products.pp / n);
     change2 += step * step;
     const double rate =
-        solved.iterations == 1 ? 0.5 : std::clamp(step / std::max(last_step, 1e-300), 0.2, 0.95);
+        solved.iterations == 1 ? 0.5 : std::clamp(step / std::max(last_step, 1e-300), 0.5, 0.95);
     const double slower = std::max(rate, last_rate);
     solved.estimated_error_m = step * slower / (1 - slower);
     last_step = step;
