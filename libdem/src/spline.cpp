@@ -223,7 +223,7 @@ std::pair<double, double> calibrate(Uncertainty& u, const std::vector<HeldOut>& 
 SolveLimits limits_of(const SplineOptions& options, const ChosenSprings& chosen) {
   if (options.tolerance_m > 0) return {options.tolerance_m, 0, options.max_iterations};
   if (chosen.hidden_rmse_m > 0) return {0.05 * chosen.hidden_rmse_m, 0.01, options.max_iterations};
-  return {0, 0.03, options.max_iterations};
+  return {0, 0.05, options.max_iterations};
 }
 
 SolveLimits coarser(SolveLimits limits, double times) {
@@ -392,7 +392,7 @@ std::vector<Field> fields(SplineOptions& o) {
        o.tolerance_m,
        {0, 1e9},
        "m",
-       "stop when the estimated RMS error is below; 0: 3 % of the change made"},
+       "stop when the estimated RMS error is below; 0: so small that RMSE changes by well under 1 %"},
       {"max_iterations", o.max_iterations, {1, 100000}, "", "stop after so many iterations"},
       {"sigma",
        o.sigma,

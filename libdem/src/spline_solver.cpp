@@ -10,6 +10,9 @@ namespace {
 
 constexpr int row_grain = 16;
 
+// Bounds of the rate at which steps are taken to shrink, when what is left is estimated.
+constexpr double fastest_rate = 0.6, slowest_rate = 0.95;
+
 /// Sums in eight lanes, so that the order of additions is fixed and the loop is still a vector one.
 struct Lanes {
   double lane[8] = {};
@@ -153,7 +156,7 @@ Solved SplineSolver::solve(Grid<double>& x, const Grid<float>* f, const SolveLim
                            const Run& run) {
   Solved solved;
   const double n = std::max(1., double(unknowns_));
-  double pAp = 0, change2 = 0, last_step = 0, last_rate = 0.5;
+  double pAp = 0, change2 = 0, last_step = 0, last_rate = fastest_rate;
   residual(x, f);
   while (!solved.converged && solved.iterations < limits.max_iterations) {
     // Precondition; make the direction conjugate to the last one.
@@ -178,12 +181,14 @@ Solved SplineSolver::solve(Grid<double>& x, const Grid<float>* f, const SolveLim
     // What is left, from the length of the steps and how fast they shrink.
     const double step = std::abs(alpha) * std::sqrt(products.pp / n);
     change2 += step * step;
+    const bool first = solved.iterations == 1;  // nothing to compare with: far from done
     const double rate =
-        solved.iterations == 1 ? 0.5 : std::clamp(step / std::max(last_step, 1e-300), 0.5, 0.95);
+        first ? slowest_rate
+              : std::clamp(step / std::max(last_step, 1e-300), fastest_rate, slowest_rate);
     const double slower = std::max(rate, last_rate);
     solved.estimated_error_m = step * slower / (1 - slower);
     last_step = step;
-    last_rate = rate;
+    last_rate = first ? fastest_rate : rate;
     const double tolerance =
         std::max(limits.tolerance_m, limits.relative_tolerance * std::sqrt(change2));
     solved.converged = solved.estimated_error_m <= tolerance;
