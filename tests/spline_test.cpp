@@ -254,7 +254,9 @@ TEST_P(EveryMask, KeepsKnownCellsBitForBit) {
   const Filled filled = fill_spline(c.dem, c.options);
   for (int y = 0; y < c.dem.size().rows; ++y)
     for (int x = 0; x < c.dem.size().cols; ++x)
-      if (c.dem.known(x, y)) ASSERT_EQ(filled.z(x, y), c.dem.z(x, y)) << x << ", " << y;
+      if (c.dem.known(x, y)) {
+        ASSERT_EQ(filled.z(x, y), c.dem.z(x, y)) << x << ", " << y;
+      }
 }
 
 TEST_P(EveryMask, EstimatesItsErrorHonestly) {
@@ -353,8 +355,9 @@ TEST(FillSpline, KeepsAnOutlierLocal) {
   // cells away less than a millionth of the outlier is left.
   for (int y = 0; y < 160; ++y)
     for (int x = 0; x < 160; ++x)
-      if (std::hypot(x - 80, y - 80) > 40)
+      if (std::hypot(x - 80, y - 80) > 40) {
         ASSERT_NEAR(with.z(x, y), without.z(x, y), 1) << x << ", " << y;
+      }
 }
 
 TEST(Tensor, IsTheGradientOfItsEnergy) {
@@ -444,7 +447,9 @@ TEST(FillSpline, AZeroNoiseMakesACellExact) {
   const Filled filled = fill_spline(dem, noise, options);
   for (int y = 0; y < 30; ++y)
     for (int x = 0; x < 60; ++x)
-      if (dem.known(x, y)) ASSERT_NEAR(filled.z(x, y), dem.z(x, y), 1e-4);
+      if (dem.known(x, y)) {
+        ASSERT_NEAR(filled.z(x, y), dem.z(x, y), 1e-4);
+      }
 }
 
 // ---- Uncertainty
@@ -511,7 +516,9 @@ TEST(SplineRealisation, MeetsTheDataAndIsRougherThanTheSpline) {
   };
   for (int y = 0; y < 100; ++y)
     for (int x = 0; x < 120; ++x)
-      if (dem.known(x, y)) ASSERT_EQ(first.z(x, y), dem.z(x, y));
+      if (dem.known(x, y)) {
+        ASSERT_EQ(first.z(x, y), dem.z(x, y));
+      }
   EXPECT_GT(roughness(first.z), 1.1 * roughness(spline.z));
   EXPECT_FALSE(first.z == second.z);
 }
