@@ -7,6 +7,7 @@
 
 #include "dem/baseline.h"
 #include "dem/mcmd.h"
+#include "dem/spline.h"
 
 namespace dem {
 
@@ -26,6 +27,18 @@ const std::vector<FillMethod>& fill_methods() {
             "as published: triangle-edge, waves, plain means",
             {{"subdivision", "triangle_edge"}, {"order", "waves"}, {"weight_exponent", "0"}}}},
           [](const Dem& d, const McmdOptions& o, const Run& r) { return fill_mcmd(d, o, r); }),
+      make_method<SplineOptions>(
+          "spline",
+          "terrain spline: springs of three orders that bend with the ground; most accurate", "",
+          {{"plain", "springs that do not bend: faster", {{"adaptive", "false"}}},
+           {"plate",
+            "the classical thin plate",
+            {{"parameters", "manual"},
+             {"L1", "0"},
+             {"L3", "0"},
+             {"fourth_order", "false"},
+             {"adaptive", "false"}}}},
+          [](const Dem& d, const SplineOptions& o, const Run& r) { return fill_spline(d, o, r); }),
       make_method<MdiOptions>("mdi",
                               "Midpoint Displacement's Inverse with its noise, then plain MD",
                               "belhadj2005", {}, fill_mdi),

@@ -1,0 +1,77 @@
+#pragma once
+// The terrain spline: the smoothest surface through the known cells, where "smooth" weighs first,
+// second and third differences so that the surface has the spectrum of terrain.
+
+#include <cstdint>
+#include <vector>
+
+#include "dem/dem.h"
+#include "dem/fields.h"
+#include "dem/run.h"
+
+namespace dem {
+
+/// Where the lengths L1 and L3 come from: from the DEM, or from the options.
+enum class SplineParameters { automatic, manual };
+
+/// What stands in Filled::sigma: nothing; a variance that depends on the distance to data; or the
+/// spread of `realisations` random surfaces.
+enum class SplineSigma { none, law, simulation };
+
+/// Options of fill_spline. The energy is the sum over 1 <= i + j <= 3 of c_ij ||Dx^i Dy^j z||^2,
+/// its symbol a1 K + a2 K^2 + a3 K^3 with K the squared wavenumber per row; lengths are in rows.
+struct SplineOptions {
+  SplineParameters parameters = SplineParameters::automatic;
+  /// Membrane for waves longer than this: a1 = (2 pi / L1)^2; 0: none.
+  double L1_rows = 64;
+  /// Third order for waves shorter than this: a3 = (L3 / 2 pi)^2; 0: none.
+  double L3_rows = 7;
+  /// Weight of the plate.
+  double a2 = 1;
+  /// Fourth-order accurate wavenumbers, g + g^2 / 12; false: g = 2 - 2 cos k, for rough ground.
+  bool fourth_order = true;
+  /// Variance of the data's noise over that of the springs; 0: known cells are met exactly.
+  double nugget = 0;
+  /// With a nugget: whether known cells return smoothed.
+  bool smooth_known = false;
+  /// Second-order springs bend with the terrain: ridges and valleys continue through gaps.
+  bool adaptive = true;
+  /// How far around a cell its bending is read; 0: the mean distance between known cells.
+  double adaptive_sigma_cells = 0;
+  /// Stop when the estimated RMS error against the converged solution is below; 0: 3 % of the
+  /// change.
+  double tolerance_m = 0;
+  int max_iterations = 100;
+  SplineSigma sigma = SplineSigma::none;
+  /// Random surfaces that sigma = simulation takes.
+  int realisations = 16;
+  /// Return the k-th random surface through the data, as rough as the terrain; 0: the spline.
+  int realisation = 0;
+  std::uint64_t seed = 1;
+};
+std::vector<Field> fields(SplineOptions& options);
+
+/// Fills every unknown cell with the terrain spline.
+/// Method:   springs of orders one to three, free boundaries, on what is left after the known
+/// cells'
+///           least-squares plane; conjugate gradients preconditioned by one V-cycle, started from
+///           MCMD. With a nugget, known cells pull by springs instead of being met exactly.
+/// Needs:    at least one known cell.
+/// Gives:    all finite; known cells bit for bit (unless smooth_known). The report tells
+/// iterations,
+///           estimated_error, residual, the parameters used, and `converged` (1 or 0).
+/// Exact on: constants; planes, to rounding.
+/// Sigma:    from surfaces drawn from the springs' distribution, scaled by the energy of the result
+///           per known cell and, with automatic parameters, by the errors of hidden known cells:
+///           72 % of them lie within one sigma (figures inside_1_sigma, inside_2_sigma).
+/// Cost:     O(cells), about 40 bytes a cell beside the result. Any number of threads gives the
+///           same bits.
+/// Throws:   std::invalid_argument, Cancelled.
+Filled fill_spline(const Dem& dem, const SplineOptions& options = {}, const Run& run = {});
+
+/// The same with noise that differs from cell to cell: `noise`, of the size of the DEM, multiplies
+/// the nugget (1: as it is; 0: this cell is exact).
+Filled fill_spline(const Dem& dem, const Raster<float>& noise, const SplineOptions& options,
+                   const Run& run = {});
+
+}  // namespace dem
