@@ -12,6 +12,23 @@
 namespace dem::app {
 namespace fs = std::filesystem;
 
+namespace {
+
+HeightRange parse_height_range(const std::string& text) {
+  const auto must_be = "LOW,HIGH in metres with LOW < HIGH, e.g. 0,4800";
+  const auto comma = text.find(',');
+  HeightRange range{0, 0};
+  if (comma != std::string::npos) {
+    range.low_m = parse_number("height-range", text.substr(0, comma), must_be);
+    range.high_m = parse_number("height-range", text.substr(comma + 1), must_be);
+  }
+  if (!(range.low_m < range.high_m))
+    throw std::invalid_argument(fmt::format("height-range = {}; must be {}", text, must_be));
+  return range;
+}
+
+}  // namespace
+
 void Shell::add_options(CLI::App& app) {
   app.add_flag("--json", json, "print one JSON object on stdout")->group("Everywhere");
   app.add_flag("-q,--quiet", quiet, "no messages, no progress; errors only")->group("Everywhere");
@@ -75,17 +92,7 @@ void add_read_options(CLI::App& app, ReadOptions& options) {
       ->group(group);
   app.add_option_function<std::string>(
          "--height-range",
-         [&options](const std::string& text) {
-           const auto comma = text.find(',');
-           const auto number = [&](const std::string& part) {
-             return parse_number("height-range", part, "LOW,HIGH in metres, e.g. 0,4800");
-           };
-           if (comma == std::string::npos) number("\"" + text + "\"");
-           options.heights =
-               HeightRange{number(text.substr(0, comma)), number(text.substr(comma + 1))};
-           if (!(options.heights->low_m < options.heights->high_m))
-             throw std::invalid_argument("height-range = " + text + "; LOW must be below HIGH");
-         },
+         [&options](const std::string& text) { options.heights = parse_height_range(text); },
          "metres of black and white of a heightmap image")
       ->type_name("LOW,HIGH")
       ->group(group);

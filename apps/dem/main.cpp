@@ -136,6 +136,9 @@ int run(int argc, char** argv) {
     return kUsage;
   }
   const std::string first = argv[1];
+  if (first.starts_with("--") && std::ranges::count(option_names(app), first) == 0)
+    return fail(kUsage, fmt::format("unknown option {}{} (see `dem --help`)", first,
+                                    suggestion(first, option_names(app))));
   if (!first.starts_with("-") && std::ranges::count(verb_names(app), first) == 0)
     return fail_unknown_verb(app, first);
   try {

@@ -126,6 +126,12 @@ class BadUsage(CliTest):
     def test_unknown_option_suggests_the_nearest(self):
         self.fails(1, "fill", "a", "b", "--metod", "mcmd", says=["--metod", "--method", "dem fill --help"])
 
+    def test_unknown_option_before_the_verb_is_refused(self):
+        self.fails(1, "--versoin", says=["--versoin", "--version"])
+
+    def test_height_range_of_one_number_is_refused(self):
+        self.fails(1, "fill", "a", "b", "--height-range", "5", says=["height-range", "LOW,HIGH"])
+
     def test_missing_argument_is_named(self):
         self.fails(1, "fill", "a", says=["OUT", "dem fill --help"])
 
