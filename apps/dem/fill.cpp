@@ -1,9 +1,11 @@
 // dem fill: fill the holes of a DEM.
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstring>
+#include <optional>
 
 #include "dem/baselines.h"
 #include "dem/holes.h"
@@ -19,6 +21,8 @@ const std::vector<std::pair<std::string, CellType>> kTypes{
 
 struct Options {
   std::string in, out, sigma;
+  std::optional<int> realisation;
+  std::optional<std::uint64_t> seed;
   std::string method{default_fill_method()};
   std::vector<std::string> set;
   bool inner_only = false;
@@ -39,9 +43,25 @@ struct Outcome {
 /// A DEM of one known cell: cheap to fill, so that bad settings show before long work.
 Dem one_cell() { return {Raster<float>({1, 1}), Mask({1, 1}, 1), {}, {}}; }
 
+/// Adds a setting that an option of its own stands for, unless it is among the settings already.
+void add_setting(ChosenMethod& chosen, const std::string& name, const std::string& value,
+                 const std::string& option) {
+  if (std::ranges::find(chosen.method->fields, name, &FieldInfo::name) ==
+      chosen.method->fields.end())
+    throw std::invalid_argument(
+        fmt::format("{}: method {} has no setting {}", option, chosen.method->name, name));
+  if (std::ranges::find(chosen.settings, name, &Settings::value_type::first) ==
+      chosen.settings.end())
+    chosen.settings.emplace_back(name, value);
+}
+
 ChosenMethod choose(const Options& o) {
   ChosenMethod chosen = find_method(all_fill_methods(), o.method);
   for (const auto& text : o.set) chosen.settings.push_back(parse_setting(text));
+  if (!o.sigma.empty()) add_setting(chosen, "sigma", "law", "--sigma");
+  if (o.realisation)
+    add_setting(chosen, "realisation", std::to_string(*o.realisation), "--realisation");
+  if (o.seed) add_setting(chosen, "seed", std::to_string(*o.seed), "--seed");
   const Filled trial = chosen.method->fill(one_cell(), chosen.settings, {});
   if (!o.sigma.empty() && trial.sigma.empty())
     throw std::invalid_argument("sigma: method " + chosen.method->name +
@@ -196,8 +216,10 @@ void add_fill(CLI::App& app, Shell& shell) {
   auto* verb = add_verb(
       app, shell, "fill", "Fill the holes of a DEM; known cells stay as they are, bit for bit",
       "  dem fill N36E008.hgt filled.hgt\n"
-      "  dem fill N36E008.hgt filled.tif --method mcmd:paper\n"
-      "  dem fill sparse.tif rough.tif --set H=0.6 --set rs=0.4     # with fractal noise\n"
+      "  dem fill sparse.tif filled.tif --sigma sigma.tif           # and how sure each cell is\n"
+      "  dem fill sparse.tif rough.tif --realisation 1              # as rough as the terrain\n"
+      "  dem fill sparse.tif filled.tif --method mcmd               # the fastest\n"
+      "  dem fill sparse.tif rough.tif --method mcmd --set rs=0.4   # with fractal noise\n"
       "  dem fill coast.tif filled.tif --inner-only --type int16    # leave voids at the border\n"
       "Methods: " +
           method_names() + " (their settings: dem methods NAME)",
@@ -213,8 +235,13 @@ void add_fill(CLI::App& app, Shell& shell) {
       ->allow_extra_args(false)
       ->type_name("KEY=VALUE");
   verb->add_flag("--inner-only", o->inner_only, "leave voids that touch the border unfilled");
-  verb->add_option("--sigma", o->sigma, "also write the standard deviation of each filled cell")
+  verb->add_option("--sigma", o->sigma, "also write the standard deviation of each cell, in metres")
       ->type_name("FILE");
+  verb->add_option("--realisation", o->realisation,
+                   "the K-th random surface through the data, as rough as the terrain")
+      ->check(CLI::Range(1, 1000000))
+      ->type_name("K");
+  verb->add_option("--seed", o->seed, "of random numbers")->type_name("N");
   add_read_options(*verb, o->read);
   add_write_options(*verb, o->write);
 }

@@ -72,6 +72,6 @@ ChosenMethod find_method(const std::vector<FillMethod>& table, std::string_view 
   return {&*method, preset->settings};
 }
 
-std::string_view default_fill_method() { return "mcmd"; }
+std::string_view default_fill_method() { return "spline"; }
 
 }  // namespace dem
