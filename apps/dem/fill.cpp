@@ -166,7 +166,10 @@ int fill(const Options& o, Shell& shell) {
     sigma.z = out.sigma.empty() ? Raster<float>(file.dem.size()) : out.sigma;
     WriteOptions plain;
     plain.overwrite = shell.overwrite;
-    write_dem(o.sigma, sigma, {}, plain, run.part(0.8, 0.85));
+    Source described;
+    described.node_registered = file.source.node_registered;
+    described.band_description = "standard deviation of the elevation in metres";
+    write_dem(o.sigma, sigma, described, plain, run.part(0.8, 0.85));
   }
   write_dem(o.out, file.dem, file.source, write, run.part(0.85, 1));
 
@@ -218,9 +221,8 @@ void add_fill(CLI::App& app, Shell& shell) {
       "  dem fill N36E008.hgt filled.hgt\n"
       "  dem fill sparse.tif filled.tif --sigma sigma.tif           # and how sure each cell is\n"
       "  dem fill sparse.tif rough.tif --realisation 1              # as rough as the terrain\n"
-      "  dem fill sparse.tif filled.tif --method mcmd               # the fastest\n"
-      "  dem fill sparse.tif rough.tif --method mcmd --set rs=0.4   # with fractal noise\n"
-      "  dem fill coast.tif filled.tif --inner-only --type int16    # leave voids at the border\n"
+      "  dem fill coast.tif filled.tif --method mcmd --inner-only   # fast; not the border's "
+      "voids\n"
       "Methods: " +
           method_names() + " (their settings: dem methods NAME)",
       [o, &shell] { return fill(*o, shell); });

@@ -150,10 +150,11 @@ class BadUsage(CliTest):
         self.fails(1, "fill", "a", "o.tif", "-m", "mcmd:magic", says=["magic", "mcmd:paper"])
 
     def test_unknown_setting_lists_those_there_are(self):
-        self.fails(1, "fill", "a", "o.tif", "--set", "J=1", says=['"J"', "I_bu"])
+        self.fails(1, "fill", "a", "o.tif", "-m", "mcmd", "--set", "J=1", says=['"J"', "I_bu"])
 
     def test_setting_out_of_range_is_refused_before_any_file_is_read(self):
-        self.fails(1, "fill", "nowhere.hgt", "o.tif", "--set", "I=1e9", says=["I = 1e9", "must be"])
+        self.fails(1, "fill", "nowhere.hgt", "o.tif", "-m", "mcmd", "--set", "I=1e9",
+                   says=["I = 1e9", "must be"])
 
     def test_setting_without_value_is_refused(self):
         self.fails(1, "fill", "a", "o.tif", "--set", "I", says=["set = I", "KEY=VALUE"])

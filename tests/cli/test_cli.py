@@ -156,10 +156,28 @@ class Fill(CliTest):
 
     def test_settings_reach_the_method(self):
         self.holed()
-        self.succeeds("fill", "N10E010.hgt", "a.tif")
-        self.succeeds("fill", "N10E010.hgt", "b.tif", "--set", "rs=5", "--set", "H=0.2")
+        self.succeeds("fill", "N10E010.hgt", "a.tif", "-m", "mcmd")
+        self.succeeds("fill", "N10E010.hgt", "b.tif", "-m", "mcmd", "--set", "rs=5", "--set", "H=0.2")
         done = self.succeeds("evaluate", "a.tif", "b.tif", "--json")
         self.assertGreater(json.loads(done.stdout)["all"]["rmse_m"], 0)
+
+    def test_sigma_is_zero_where_known_and_positive_elsewhere(self):
+        self.holed()
+        self.succeeds("fill", "N10E010.hgt", "out.tif", "--sigma", "sigma.tif")
+        facts = json.loads(self.succeeds("info", "sigma.tif", "--json").stdout)["files"][0]
+        self.assertEqual(facts["type"], "float32")
+        self.assertEqual((facts["unknown_cells"], facts["low_m"]), (0, 0))
+        self.assertGreater(facts["high_m"], 0)
+
+    def test_realisations_differ_by_number_and_seed_only(self):
+        self.holed()
+        for name, options in {"a": ["1"], "b": ["1"], "c": ["2"], "d": ["1", "--seed", "9"]}.items():
+            self.succeeds("fill", "N10E010.hgt", name + ".tif", "--type", "float32", "--realisation", *options)
+        rmse = {name: json.loads(self.succeeds("evaluate", "a.tif", name + ".tif", "--json").stdout)["all"]["rmse_m"]
+                for name in "bcd"}
+        self.assertEqual(rmse["b"], 0)
+        self.assertGreater(rmse["c"], 0)
+        self.assertGreater(rmse["d"], 0)
 
     def test_quiet_says_nothing(self):
         self.holed()
