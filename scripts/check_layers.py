@@ -22,11 +22,11 @@ LAYERS = {
 # An algorithm that is written in several private files. They belong to it alone.
 PARTS = {
     "mcmd": ["lattice", "midpoint", "pyramid", "row_kernels", "waves"],
-    "spline": ["grid", "multigrid", "spline_solver", "springs", "tensor"],
+    "spline": ["grid", "multigrid", "overshoot", "spline_parameters", "spline_sample", "spline_solver", "springs", "tensor"],
 }
 
 # The one algorithm that calls another: the spline's solver starts from MCMD's surface.
-CALLS = {("spline", "mcmd")}
+CALLS = {("spline", "mcmd"), ("spline_parameters", "mcmd")}
 
 # The layers that each layer may include. Algorithms do not include each other: they compose
 # through data.

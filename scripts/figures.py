@@ -14,7 +14,7 @@ gdal.UseExceptions()
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 RATES = ["50", "10", "3.4", "1"]
-SIDE = 400  # cells of the picture, from the middle of the tile, where the summit is
+SIDE = 300  # cells of the picture, from the middle of the tile, where the summit is
 BEGIN, END = "<!-- figures: begin -->\n", "<!-- figures: end -->\n"
 
 
@@ -31,9 +31,9 @@ def table(scores):
 
 
 def picture(folder):
-    """What was known, what MCMD makes of it, and the truth, side by side."""
+    """What was known, what MCMD and the spline make of it, and the truth, side by side."""
     panels = []
-    for name in ("sampled.png", "mcmd_default.png", "truth.png"):
+    for name in ("sampled.png", "mcmd_default.png", "spline.png", "truth.png"):
         grey = gdal.Open(str(folder / name)).ReadAsArray()
         rgb = grey if grey.ndim == 3 else numpy.stack([grey] * 3)
         side = min(SIDE, *rgb.shape[1:])

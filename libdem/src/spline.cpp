@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "dem/mcmd.h"
+#include "overshoot.h"
 #include "parallel.h"
 #include "spline_parameters.h"
 #include "spline_sample.h"
@@ -280,16 +281,34 @@ void sample(const Dem& dem, const SplineOptions& options, const ChosenSprings& c
   }
 }
 
+/// Shortens L1 while the springs shoot over the gaps. Hidden cells cannot tell: where only the steep
+/// cells are known, those beside the gaps are steep too, and the gaps are flat.
+void soften_overshooting(SplineOptions& options, const Dem& dem, const Raster<float>& noise,
+                         double X, const Grid<double>& start, const Raster<std::uint16_t>& distance,
+                         const Run& run) {
+  constexpr double most = 0.16, shortest_rows = 4;
+  const SolveLimits rough{0, 0.05, options.max_iterations};
+  Data data = make_data(dem, noise, options.nugget, start);
+  while (options.L1_rows == 0 || options.L1_rows > shortest_rows) {
+    Grid<double> x = start;
+    SplineSolver solver(springs_of(options, X, dem.size()), X, data.free, data.w);
+    solver.solve(x, data.f.empty() ? nullptr : &data.f, rough, run);
+    if (overshoot(x, dem.known, distance) <= most) return;
+    options.L1_rows = options.L1_rows == 0 ? 128 : options.L1_rows / 2;
+  }
+}
+
 Filled solve(const Dem& dem, const Raster<float>& noise, SplineOptions options, const Run& run) {
   const double X = squared_aspect(dem.spacing);
   const Plane plane = fit_plane(dem);
   ChosenSprings chosen;
+  Raster<std::uint16_t> distance;
   Grid<double> x;
   {
     const Dem flat = detrended(dem, plane);
     x = above_plane(dem, flat, plane, run.part(0, 0.05));
     if (options.parameters == SplineParameters::automatic || options.adaptive) {
-      const auto distance = distances_to_known(dem.known);
+      distance = distances_to_known(dem.known);
       chosen.layout = layout_of(dem, distance);
       if (options.parameters == SplineParameters::automatic)
         chosen = choose_springs(flat, chosen.layout, distance, X, run.part(0.05, 0.4));
@@ -300,7 +319,10 @@ Filled solve(const Dem& dem, const Raster<float>& noise, SplineOptions options, 
     options.L3_rows = chosen.L3_rows;
     options.fourth_order = chosen.fourth_order;
     if (options.nugget == 0) options.nugget = chosen.nugget;
+    if (chosen.layout != Layout::scattered)
+      soften_overshooting(options, dem, noise, X, x, distance, run.part(0.3, 0.3));
   }
+  distance = {};
 
   Solved solved;
   Filled filled;
@@ -392,7 +414,8 @@ std::vector<Field> fields(SplineOptions& o) {
        o.tolerance_m,
        {0, 1e9},
        "m",
-       "stop when the estimated RMS error is below; 0: so small that RMSE changes by well under 1 %"},
+       "stop when the estimated RMS error is below; 0: so small that RMSE changes by well under 1 "
+       "%"},
       {"max_iterations", o.max_iterations, {1, 100000}, "", "stop after so many iterations"},
       {"sigma",
        o.sigma,
