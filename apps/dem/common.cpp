@@ -162,8 +162,9 @@ Raster<float> completed(const Dem& dem, const Raster<float>& other) {
 OutputFolder::OutputFolder(const std::string& path) : path_(path) {
   std::error_code error;
   made_ = fs::create_directory(path, error);
+  if (std::error_code e; fs::exists(path, e) && !fs::is_directory(path, e))
+    throw IoError(path, "exists and is not a folder");
   if (error) throw IoError(path, error.message());
-  if (!fs::is_directory(path)) throw IoError(path, "exists and is not a folder");
 }
 
 OutputFolder::~OutputFolder() {

@@ -144,12 +144,15 @@ Findings reproduce_figures(const ReproduceOptions&, const OutputFolder& folder, 
   double done = 0;
   for (const auto& figure : figures) {
     const std::string path = folder.file(figure.file);
-    write_image(path, figure.make(run.part(done, done)), shell.overwrite);
+    f.writers.push_back([path, picture = figure.make(run.part(done, done)),
+                         overwrite = shell.overwrite] { write_image(path, picture, overwrite); });
     run.report(done += 1.0 / 6, figure.file);
     f.pictures.push_back(path);
     f.notes.push_back(fmt::format("figure {}", figure.caption));
   }
-  write_text(line, figure6(run.part(done, 1)), shell.overwrite);
+  f.writers.push_back([line, text = figure6(run.part(done, 1)), overwrite = shell.overwrite] {
+    write_text(line, text, overwrite);
+  });
   f.pictures.push_back(line);
   f.notes.push_back("figure 6: MCMD on a line, beside MD alone (figure 4)");
   f.notes.push_back(

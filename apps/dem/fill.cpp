@@ -108,7 +108,16 @@ std::string settings_text(const Settings& settings) {
   return text;
 }
 
-void report(const Options& o, const ChosenMethod& chosen, const Outcome& out, Shell& shell) {
+/// What became of the known cells: in another type they need not be the same.
+std::string known_cells(const Options& o, const Outcome& out, CellType type) {
+  if (!out.known_kept) return "CHANGED";
+  if (!o.write.type || *o.write.type == type) return "unchanged";
+  return "written as " +
+         std::ranges::find(kTypes, *o.write.type, &decltype(kTypes)::value_type::second)->first;
+}
+
+void report(const Options& o, const ChosenMethod& chosen, const Outcome& out, CellType type,
+            Shell& shell) {
   if (out.unknown == 0) {
     shell.say("all cells are known: {} is a copy of {}", o.out, o.in);
   } else {
@@ -120,8 +129,7 @@ void report(const Options& o, const ChosenMethod& chosen, const Outcome& out, Sh
         "filled {} of {} unknown cells ({} of {} voids touch the border){}; {}, {:.3f} s; known "
         "cells {}: {}",
         grouped(out.filled), grouped(out.unknown), grouped(out.voids.border_voids),
-        grouped(out.voids.voids), left, o.method, out.seconds,
-        out.known_kept ? "unchanged" : "CHANGED", o.out);
+        grouped(out.voids.voids), left, o.method, out.seconds, known_cells(o, out, type), o.out);
   }
   Json figures = Json::array();
   for (const auto& f : out.figures)
@@ -173,7 +181,7 @@ int fill(const Options& o, Shell& shell) {
   }
   write_dem(o.out, file.dem, file.source, write, run.part(0.85, 1));
 
-  report(o, chosen, out, shell);
+  report(o, chosen, out, file.source.type, shell);
   if (!out.known_kept) return kCheckFailed;
   return out.left > 0 ? kUnfilled : kDone;
 }
@@ -241,7 +249,7 @@ void add_fill(CLI::App& app, Shell& shell) {
       ->type_name("FILE");
   verb->add_option("--realisation", o->realisation,
                    "the K-th random surface through the data, as rough as the terrain")
-      ->check(CLI::Range(1, 1000000))
+      ->check(CLI::Range(1, 1000000).description(""))
       ->type_name("K");
   verb->add_option("--seed", o->seed, "of random numbers")->type_name("N");
   add_read_options(*verb, o->read);

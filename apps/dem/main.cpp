@@ -85,19 +85,33 @@ int fail_usage(const CLI::App& app, const CLI::ParseError& error) {
   return fail(kUsage, fmt::format("{} (see `{} --help`)", what, command));
 }
 
+/// An option before the verb that the program itself does not have.
+int fail_early_option(const CLI::App& app, const std::string& word) {
+  for (const auto* verb : app.get_subcommands({}))
+    if (verb->get_option_no_throw(word))
+      return fail(kUsage,
+                  fmt::format("{0} belongs after the verb, like `dem {1} {0}` (see `dem --help`)",
+                              word, verb->get_name()));
+  return fail(kUsage, fmt::format("unknown option {}{} (see `dem --help`)", word,
+                                  suggestion(word, option_names(app))));
+}
+
 int fail_unknown_verb(const CLI::App& app, const std::string& word) {
   const auto names = verb_names(app);
   return fail(kUsage, fmt::format("unknown verb {}{} (verbs: {})", word, suggestion(word, names),
                                   fmt::join(names, ", ")));
 }
 
+/// `code`, unless what was printed could not be written.
+int flushed(int code) {
+  if (std::fflush(stdout) == 0) return code;
+  return fail(kFile, fmt::format("stdout: {}", std::strerror(errno)));
+}
+
 /// Runs the chosen verb; each kind of error has its exit code.
 int run_verb(Shell& shell) {
   try {
-    const int code = shell.verb();
-    if (std::fflush(stdout) != 0)
-      return fail(kFile, fmt::format("stdout: {}", std::strerror(errno)));
-    return code;
+    return flushed(shell.verb());
   } catch (const Cancelled&) {
     shell.clear_bar();
     return fail(kInterrupted, "interrupted; no output was changed");
@@ -136,15 +150,14 @@ int run(int argc, char** argv) {
     return kUsage;
   }
   const std::string first = argv[1];
-  if (first.starts_with("--") && std::ranges::count(option_names(app), first) == 0)
-    return fail(kUsage, fmt::format("unknown option {}{} (see `dem --help`)", first,
-                                    suggestion(first, option_names(app))));
+  if (first.starts_with("-") && !app.get_option_no_throw(first))
+    return fail_early_option(app, first);
   if (!first.starts_with("-") && std::ranges::count(verb_names(app), first) == 0)
     return fail_unknown_verb(app, first);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help_or_version) {
-    return app.exit(help_or_version);
+    return flushed(app.exit(help_or_version));
   } catch (const CLI::ParseError& error) {
     return fail_usage(app, error);
   } catch (const std::invalid_argument& error) {

@@ -72,11 +72,15 @@ McmdOptions mcmd_options(const std::string& name) {
 
 void draw(Findings& findings, const std::string& path, const Raster<float>& z, Spacing spacing,
           bool overwrite, const Mask& known) {
+  const auto add = [&](auto picture) {
+    findings.pictures.push_back(path);
+    findings.writers.push_back(
+        [path, overwrite, picture = std::move(picture)] { write_image(path, picture, overwrite); });
+  };
   if (known.empty())
-    write_image(path, hillshade(z, spacing), overwrite);
+    add(hillshade(z, spacing));
   else
-    write_image(path, shaded_relief(z, spacing, {}, known), overwrite);
-  findings.pictures.push_back(path);
+    add(shaded_relief(z, spacing, {}, known));
 }
 
 namespace {
@@ -123,6 +127,7 @@ int reproduce(const ReproduceOptions& o, Shell& shell) {
     findings = reproduce_n36e008(o, folder, shell);
   else
     findings = reproduce_figures(o, folder, shell);
+  for (const auto& write : findings.writers) write();
   shell.print(as_json(o.what, findings), as_text(findings));
   if (findings.failures.empty()) return kDone;
   fmt::print(stderr, "dem: check failed: {}\n", fmt::join(findings.failures, "; "));

@@ -26,7 +26,8 @@ struct Findings {
   std::vector<std::string> notes;  ///< what differs from the paper, a line each
   std::vector<Comparison> numbers;
   std::vector<std::string> pictures;
-  std::string table;  ///< more for a person, after the numbers
+  std::vector<std::function<void()>> writers;  ///< write the pictures, once all work is done
+  std::string table;                           ///< more for a person, after the numbers
   Json extra = Json::object();
   std::vector<std::string> failures;  ///< checks that failed
 };
@@ -48,7 +49,7 @@ Dem window_around_summit(const Dem& dem, int size);
 /// Options of MCMD as `name` ("mcmd", "mcmd:paper") stands for them in the method table.
 McmdOptions mcmd_options(const std::string& name);
 
-/// Writes a hillshade; known cells alone, white elsewhere, when `known` is given.
+/// Adds a hillshade; known cells alone, white elsewhere, when `known` is given.
 void draw(Findings& findings, const std::string& path, const Raster<float>& z, Spacing spacing,
           bool overwrite, const Mask& known = {});
 

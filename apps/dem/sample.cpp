@@ -110,7 +110,11 @@ void add_sample(CLI::App& app, Shell& shell) {
   const auto way = [&](const char* name, auto& value, const char* type, const char* doc) {
     return verb->add_option(name, value, doc)->type_name(type)->group("How (exactly one)");
   };
-  const auto positive = CLI::PositiveNumber.description("");
+  const auto positive = [](const std::string& text) {
+    double value = 0;
+    const bool good = CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value > 0;
+    return good ? std::string() : text + "; must be a number above 0";
+  };
   o->ways = {
       way("--keep", o->keep, "P%", "keep this share of the known cells, at random"),
       way("--count", o->count, "N", "keep this many cells, at random")->check(positive),
@@ -120,6 +124,9 @@ void add_sample(CLI::App& app, Shell& shell) {
       way("--tracks", o->tracks, "N", "keep N straight tracks, as a ship's")->check(positive),
       way("--contours", o->contours, "METRES", "keep contour lines so far apart")->check(positive)};
   verb->add_option("--seed", o->seed, "another seed, other cells; the same on every machine")
+      ->check([](const std::string& text) {
+        return text.starts_with('-') ? text + "; must be a whole number from 0 up" : std::string();
+      })
       ->type_name("N")
       ->capture_default_str();
   add_read_options(*verb, o->read);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <new>
 
 #include "dem/io.h"
@@ -43,6 +44,10 @@ void GdalErrors::fail(const std::string& path, const std::string& fallback) cons
   std::string cause = any() ? first_ : fallback;
   for (const std::string& prefix : {path + ": ", "`" + path + "' "})
     if (cause.starts_with(prefix)) cause.erase(0, prefix.size());
+  // While it is written the file has another folder, which says nothing to anybody.
+  const std::string name = "/" + std::filesystem::path(path).filename().string() + ": ";
+  if (const auto at = cause.find(name); at != std::string::npos && cause.find(": ") > at)
+    cause.erase(0, at + name.size());
   throw IoError(path, cause);
 }
 

@@ -172,10 +172,14 @@ int checked_size(const std::string& path, std::span<const std::uint8_t> bytes) {
   if (right_size) return int(side);
   const int usual = *std::ranges::min_element(
       kUsualSizes, {}, [&](int n) { return std::abs(size_of(n) - std::int64_t(bytes.size())); });
+  std::string nearest = fmt::format("{} for {} x {}", size_of(side), side, side);
+  if (usual != side)
+    nearest +=
+        fmt::format(" and, of the usual sizes, {} for {} x {}", size_of(usual), usual, usual);
   throw IoError(path,
                 fmt::format("has {} bytes, which is no square of 16-bit heights (truncated?); "
-                            "nearest are {} for {} x {} and, of the usual sizes, {} for {} x {}",
-                            bytes.size(), size_of(side), side, side, size_of(usual), usual, usual));
+                            "nearest: {}",
+                            bytes.size(), nearest));
 }
 
 Corner corner_of(const std::string& path, const std::string& vsi, const ReadOptions& options) {

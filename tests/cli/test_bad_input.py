@@ -80,6 +80,7 @@ class BadOutput(CliTest):
     def test_folder_below_a_file_is_refused(self):
         self.holed()
         self.fails(2, "curve", "N10E010.hgt", "N10E010.hgt/out", says=["N10E010.hgt"])
+        self.fails(2, "curve", "N10E010.hgt", "N10E010.hgt", says=["not a folder"])
         self.assert_files("N10E010.hgt")
 
     def test_unknown_format_is_refused(self):
@@ -90,7 +91,9 @@ class BadOutput(CliTest):
     def test_full_disk_leaves_nothing(self):
         self.noisy()
         for out in ("out.tif", "out.hgt", "out.asc"):
-            self.fails(2, "fill", "N10E010.hgt", out, preexec_fn=limit_file_size(20000), says=[out])
+            done = self.fails(2, "fill", "N10E010.hgt", out, preexec_fn=limit_file_size(20000),
+                              says=[out])
+            self.assertEqual(done.stderr.count(out), 1)  # its folder while writing is no news
             self.assert_files("N10E010.hgt")
 
     def test_full_disk_leaves_the_old_file(self):
@@ -103,10 +106,11 @@ class BadOutput(CliTest):
         self.assert_files("N10E010.hgt", "out.tif")
 
     def test_closed_stdout_is_an_error(self):
-        with open("/dev/full", "w") as full:
-            done = subprocess.run([DEM, "methods"], stdout=full, stderr=subprocess.PIPE, text=True)
-        self.assertEqual(done.returncode, 2)
-        self.assert_one_error_line(done.stderr, ["No space left"])
+        for argument in ("methods", "--help"):
+            with open("/dev/full", "w") as full:
+                done = subprocess.run([DEM, argument], stdout=full, stderr=subprocess.PIPE, text=True)
+            self.assertEqual(done.returncode, 2)
+            self.assert_one_error_line(done.stderr, ["No space left"])
 
     def noisy(self):
         """Heights that no compression makes small."""
@@ -128,6 +132,10 @@ class BadUsage(CliTest):
 
     def test_unknown_option_before_the_verb_is_refused(self):
         self.fails(1, "--versoin", says=["--versoin", "--version"])
+
+    def test_option_of_a_verb_before_the_verb_is_told_its_place(self):
+        for option in ("--quiet", "-q"):
+            self.fails(1, option, "fill", "a", "b", says=[option, "after the verb"])
 
     def test_height_range_of_one_number_is_refused(self):
         self.fails(1, "fill", "a", "b", "--height-range", "5", says=["height-range", "LOW,HIGH"])
@@ -166,6 +174,12 @@ class BadUsage(CliTest):
         self.fails(1, "sample", "a", "b", says=["dem sample --help"])
         self.fails(1, "sample", "a", "b", "--every", "2", "--count", "9", says=["dem sample --help"])
 
+    def test_number_of_samples_must_be_positive(self):
+        for way in ("--count", "--every", "--tracks", "--contours"):
+            done = self.fails(1, "sample", "a", "b", way, "0", says=[way, "0; must be", "above 0"])
+            self.assertLess(len(done.stderr), 100)
+        self.fails(1, "sample", "a", "b", "--count", "5", "--seed=-1", says=["seed", "-1; must be"])
+
     def test_share_without_percent_sign_is_refused(self):
         self.fails(1, "sample", "a", "b", "--keep", "3.4", says=["keep = 3.4", "3.4%"])
         self.fails(1, "sample", "a", "b", "--keep", "140%", says=["keep = 140%"])
@@ -198,6 +212,13 @@ class Interruption(CliTest):
     def test_sigint_in_a_curve_is_exit_5_and_leaves_no_folder(self):
         self.hgt(side=257)
         code = self.interrupted(signal.SIGINT, "curve", "N10E010.hgt", "out", "--repeats", "1000")
+        self.assertEqual(code, 5)
+        self.assert_files("N10E010.hgt")
+
+    def test_sigint_in_a_reproduction_is_exit_5_and_leaves_no_folder(self):
+        self.hgt(side=257)
+        code = self.interrupted(signal.SIGINT, "reproduce", "mount-washington", "out", "--tile",
+                                "N10E010.hgt", "--repeats", "1000")
         self.assertEqual(code, 5)
         self.assert_files("N10E010.hgt")
 

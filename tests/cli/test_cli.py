@@ -154,6 +154,12 @@ class Fill(CliTest):
         facts = json.loads(self.succeeds("info", "out.bin", "--json").stdout)["files"][0]
         self.assertEqual((facts["format"], facts["type"]), ("GTiff", "float32"))
 
+    def test_known_cells_written_in_another_type_are_not_called_unchanged(self):
+        self.holed()
+        self.assertIn("known cells unchanged", self.succeeds("fill", "N10E010.hgt", "a.tif").stderr)
+        done = self.succeeds("fill", "N10E010.hgt", "b.tif", "--type", "float32")
+        self.assertIn("known cells written as float32", done.stderr)
+
     def test_settings_reach_the_method(self):
         self.holed()
         self.succeeds("fill", "N10E010.hgt", "a.tif", "-m", "mcmd")
