@@ -170,6 +170,9 @@ Eigen::VectorXd direct_solution(const Dem& dem, const SplineOptions& o) {
     if (eigen.eigenvalues()[k] > 1e-9 * eigen.eigenvalues()[1])
       slope += eigen.eigenvectors().col(k) * eigen.eigenvectors().col(k).dot(P.transpose() * h) /
                eigen.eigenvalues()[k];
+  // As far as it explains the heights: slopes shrink with R^2, to nothing at a half.
+  const double R2 = h.squaredNorm() > 0 ? slope.dot(P.transpose() * h) / h.squaredNorm() : 0;
+  slope *= std::clamp(2 * R2 - 1, 0.0, 1.0);
   Eigen::VectorXd plane(n), data = Eigen::VectorXd::Zero(n);
   for (int i = 0; i < n; ++i)
     plane[i] = mz + slope[0] * (i % cols - mx) + slope[1] * (i / cols - my);

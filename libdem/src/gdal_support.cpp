@@ -45,7 +45,8 @@ void GdalErrors::fail(const std::string& path, const std::string& fallback) cons
   for (const std::string& prefix : {path + ": ", "`" + path + "' "})
     if (cause.starts_with(prefix)) cause.erase(0, prefix.size());
   // While it is written the file has another folder, which says nothing to anybody.
-  const std::string name = "/" + std::filesystem::path(path).filename().string() + ": ";
+  std::string name = std::filesystem::path(path).filename().string();
+  name = '/' + name + ": ";
   if (const auto at = cause.find(name); at != std::string::npos && cause.find(": ") > at)
     cause.erase(0, at + name.size());
   throw IoError(path, cause);

@@ -40,7 +40,10 @@ void for_known(const Dem& dem, const Each& each) {
   }
 }
 
-/// The least-squares plane of the known cells. Cells on a line leave the slope across it open: 0.
+/// The plane that the membrane pulls to: the least-squares plane of the known cells as far as they are
+/// one. Its slopes shrink with R^2, the part of the variance that it explains, from whole at 1 to
+/// none at 0.5: else a mountain on one side of a basin would tilt the basin. Cells on a line leave
+/// the slope across it open: 0.
 Plane fit_plane(const Dem& dem) {
   double n = 0, x_sum = 0, y_sum = 0, z_sum = 0;
   for_known(dem, [&](int x, int y, double z) {
@@ -50,7 +53,7 @@ Plane fit_plane(const Dem& dem) {
     z_sum += z;
   });
   Plane plane{z_sum / n, 0, 0, x_sum / n, y_sum / n};
-  double xx = 0, xy = 0, yy = 0, xz = 0, yz = 0;
+  double xx = 0, xy = 0, yy = 0, xz = 0, yz = 0, zz = 0;
   for_known(dem, [&](int col, int row, double z) {
     const double x = col - plane.centre_x, y = row - plane.centre_y, h = z - plane.mean_m;
     xx += x * x;
@@ -58,6 +61,7 @@ Plane fit_plane(const Dem& dem) {
     yy += y * y;
     xz += x * h;
     yz += y * h;
+    zz += h * h;
   });
   // Pseudo-inverse of the 2 x 2 matrix through its eigenvectors (ux, uy).
   const double half = (xx - yy) / 2, radius = std::hypot(half, xy), middle = (xx + yy) / 2;
@@ -71,6 +75,10 @@ Plane fit_plane(const Dem& dem) {
     plane.slope_x += along * ux;
     plane.slope_y += along * uy;
   }
+  const double explained = zz > 0 ? (plane.slope_x * xz + plane.slope_y * yz) / zz : 0;
+  const double kept = std::clamp(2 * explained - 1, 0.0, 1.0);
+  plane.slope_x *= kept;
+  plane.slope_y *= kept;
   return plane;
 }
 
