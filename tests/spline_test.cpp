@@ -292,10 +292,10 @@ TEST(FillSpline, ReturnsTheSameBitsForAnyNumberOfThreads) {
   SplineOptions options;
   options.sigma = SplineSigma::law;
   for (const Dem& dem :
-       {random_tenth({211, 190}),
-        masked(terrain_dem({200, 230}), [](int x, int y) { return x % 90 < 40 || y % 70 < 30; })}) {
+       {random_tenth({131, 118}),
+        masked(terrain_dem({120, 150}), [](int x, int y) { return x % 90 < 40 || y % 70 < 30; })}) {
     const Filled one = fill_spline(dem, options, {1, {}});
-    for (const int threads : {2, 3, 7}) {
+    for (const int threads : {2, 5}) {
       const Filled many = fill_spline(dem, options, {threads, {}});
       EXPECT_TRUE(many.z == one.z) << threads;
       EXPECT_TRUE(many.sigma == one.sigma) << threads;

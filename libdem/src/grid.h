@@ -18,10 +18,12 @@
 #define DEM_CLONES
 #endif
 #define DEM_INLINE __attribute__((always_inline))
-#ifdef __clang__
+#if defined(__clang__)
 #define DEM_INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
-#else
+#elif defined(__GNUC__) && defined(__OPTIMIZE__)
 #define DEM_INDEPENDENT _Pragma("GCC ivdep")
+#else
+#define DEM_INDEPENDENT
 #endif
 
 namespace dem {
