@@ -17,7 +17,7 @@
 namespace dem {
 namespace {
 
-// ---- Terrains and masks ------------------------------------------------------------------------
+// ---- Terrains and masks
 
 /// Rolling, rough ground with a slope and a cliff: nothing that a spline meets by luck.
 float terrain(int x, int y) {
@@ -117,7 +117,6 @@ std::vector<Case> cases() {
 }
 
 // ---- The oracle: the same energy, solved by a sparse direct method
-// ---------------------------------
 
 /// Everything is written anew from the definition: springs as rows of a matrix, no stencil.
 Eigen::VectorXd direct_solution(const Dem& dem, const SplineOptions& o) {
@@ -282,7 +281,6 @@ INSTANTIATE_TEST_SUITE_P(FillSpline, EveryMask, testing::ValuesIn(cases()), [](c
 });
 
 // ---- Whole surfaces, default options
-// --------------------------------------------------------------
 
 Dem random_tenth(Size size) {
   return masked(terrain_dem(size), [](int x, int y) { return chance(0.1, x, y); });
@@ -456,7 +454,6 @@ TEST(FillSpline, AZeroNoiseMakesACellExact) {
 }
 
 // ---- Uncertainty
-// ------------------------------------------------------------------------------------
 
 TEST(SplineSigma, IsZeroAtDataAndGrowsAwayFromThem) {
   SplineOptions options;
@@ -527,7 +524,6 @@ TEST(SplineRealisation, MeetsTheDataAndIsRougherThanTheSpline) {
 }
 
 // ---- Choices and errors
-// --------------------------------------------------------------------------------
 
 TEST(SplineParametersChosen, FollowTheGround) {
   // Noise from cell to cell wants springs that tie only neighbours; rolling hills want smooth ones.

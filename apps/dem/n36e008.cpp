@@ -3,7 +3,9 @@
 
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 
+#include "dem/baselines.h"
 #include "dem/evaluate.h"
 #include "dem/geodesy.h"
 #include "dem/holes.h"
@@ -49,8 +51,8 @@ void add(Findings& f, const std::string& what, std::optional<double> paper, doub
 
 Findings reproduce_n36e008(const ReproduceOptions& o, const OutputFolder& folder, Shell& shell) {
   const std::string original = folder.file("original.png"), edges = folder.file("edges.png");
-  const std::pair<std::string, std::string> methods[] = {{"mcmd:paper", "mcmd_paper"},
-                                                         {"mcmd", "mcmd_default"}};
+  const std::pair<std::string, std::string> methods[] = {
+      {"mcmd:paper", "mcmd_paper"}, {"mcmd", "mcmd_default"}, {"spline", "spline"}};
   for (const auto& path : {original, edges}) check_writable(path, shell.overwrite);
   for (const auto& [name, file] : methods)
     for (const char* what : {"rebuilt_", "voids_"})
@@ -85,22 +87,26 @@ Findings reproduce_n36e008(const ReproduceOptions& o, const OutputFolder& folder
   const Dem truth = truth_path.empty() ? Dem{} : read_tile(truth_path, run.part(0.1, 0.2)).dem;
   if (!truth_path.empty()) f.notes.push_back("Truth inside the voids: " + truth_path);
   double from = 0.2;
+  const double step = 0.8 / 2 / double(std::size(methods));
   for (const auto& [name, file] : methods) {
-    const McmdOptions options = mcmd_options(name);
-    const Raster<float> rebuilt = fill_mcmd(sampled, options, run.part(from, from + 0.2));
+    const ChosenMethod chosen = find_method(all_fill_methods(), name);
+    const auto fill = [&](const Dem& dem) {
+      from += step;
+      return chosen.method->fill(dem, chosen.settings, run.part(from - step, from)).z;
+    };
+    const Raster<float> rebuilt = fill(sampled);
     add(f, name + ": RMSE, rebuilt from edges, all cells", kPaperRmse,
         errors_over(tile, rebuilt, tile.known).rmse_m);
     add(f, name + ": RMSE, rebuilt from edges, removed cells", {},
         errors_over(tile, rebuilt, removed_cells(tile, sampled)).rmse_m);
     draw(f, folder.file("rebuilt_" + file + ".png"), rebuilt, tile.spacing, shell.overwrite);
     if (voids.cells > 0) {
-      const Raster<float> filled = fill_mcmd(tile, options, run.part(from + 0.2, from + 0.4));
+      const Raster<float> filled = fill(tile);
       if (!truth_path.empty())
         add(f, name + ": RMSE in the real voids", {},
             errors_over(truth, filled, removed_cells(truth, tile)).rmse_m);
       draw(f, folder.file("voids_" + file + ".png"), filled, tile.spacing, shell.overwrite);
     }
-    from += 0.4;
   }
   return f;
 }

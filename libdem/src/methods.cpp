@@ -29,7 +29,8 @@ const std::vector<FillMethod>& fill_methods() {
           [](const Dem& d, const McmdOptions& o, const Run& r) { return fill_mcmd(d, o, r); }),
       make_method<SplineOptions>(
           "spline",
-          "terrain spline: springs of three orders that bend with the ground; most accurate", "",
+          "terrain spline: springs of three orders that bend with the ground; most accurate",
+          "szeliski1989",
           {{"plain", "springs that do not bend: faster", {{"adaptive", "false"}}},
            {"plate",
             "the classical thin plate",

@@ -13,7 +13,7 @@ constexpr double smoothed_part = 40;  // it damps the eigenvalues above largest 
 constexpr int coarsest_cells = 100;
 constexpr double pin_cap = 1000;
 
-// ---- Stencil kernels -------------------------------------------------------------------------
+// ---- Stencil kernels
 
 template <class T>
 DEM_INLINE inline T diamond_sum(const T* const (&u)[7], const T (&c)[7][4], int x) {
@@ -109,7 +109,7 @@ DEM_CLONES void first_step_row(const float* dinv, const float* b, float c, Span 
   for (int x = span.begin; x < span.end; ++x) out[x] = c * dinv[x] * b[x];
 }
 
-// ---- Between grids ---------------------------------------------------------------------------
+// ---- Between grids
 
 /// sum = here + (sum + below) / 2.
 DEM_CLONES void between_row(const float* here, const float* below, int cols, float* sum) {
@@ -191,7 +191,7 @@ void restrict_band(Size fine, Halving half, int Y0, int Y1, Grid<float>& coarse,
   }
 }
 
-// ---- Bands of rows ---------------------------------------------------------------------------
+// ---- Bands of rows
 
 /// Calls work(y0, y1) for bands that cover all rows. What is computed for a row must not depend on
 /// the band it is in; then neither does the result depend on the number of threads.
@@ -311,7 +311,7 @@ DEM_CLONES void residual_row(const RowStencil<double>& A, const double* const* x
   keep_free(dinv, span, out);
 }
 
-// ---- The coarsest grid -------------------------------------------------------------------------
+// ---- The coarsest grid
 
 BandedFactor::BandedFactor(const Level& level)
     : size_(level.size), band_(3 * level.size.cols), fixed_(level.size.cells()) {
@@ -356,7 +356,7 @@ void BandedFactor::solve(const Grid<float>& b, Grid<float>& x) const {
   for (int i = 0; i < n; ++i) x.row(i / cols)[i % cols] = float(v[std::size_t(i)]);
 }
 
-// ---- The hierarchy -----------------------------------------------------------------------------
+// ---- The hierarchy
 
 namespace {
 

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double two_pi = 2 * std::numbers::pi;
 
-// ---- The plane under the terrain -------------------------------------------------------------
+// ---- The plane under the terrain
 
 /// Height mean_m + slope_x (col - centre_x) + slope_y (row - centre_y).
 struct Plane {
@@ -82,7 +82,7 @@ Plane fit_plane(const Dem& dem) {
   return plane;
 }
 
-// ---- The energy --------------------------------------------------------------------------------
+// ---- The energy
 
 /// Where the options leave the energy blind to constants (no membrane), a membrane a thousand times
 /// longer than the DEM holds what the data do not.
@@ -101,7 +101,6 @@ double squared_aspect(Spacing spacing) {
 }
 
 // ---- The start
-// -----------------------------------------------------------------------------------
 
 /// The DEM with the plane taken off.
 Dem detrended(const Dem& dem, const Plane& plane) {
@@ -128,7 +127,6 @@ Grid<double> above_plane(const Dem& dem, const Dem& flat, const Plane& plane, co
 }
 
 // ---- Data that are met, and data that pull
-// ---------------------------------------------------------
 
 struct Data {
   Mask free;      ///< cells to solve for
@@ -173,7 +171,6 @@ bool all_whole_metres(const Dem& dem) {
 }
 
 // ---- Uncertainty
-// ---------------------------------------------------------------------------------
 
 /// Random surfaces that are 0 at the data, in units of the springs' scale.
 class Simulation {

@@ -16,7 +16,7 @@ namespace {
 constexpr std::uint64_t seed = 20070;
 constexpr double none = 512;  // stands for "no membrane" where lengths are compared
 
-// ---- Trials: a part of the DEM with some known cells hidden -------------------------------------
+// ---- Trials: a part of the DEM with some known cells hidden
 
 struct Hidden {
   int col, row;
@@ -89,7 +89,7 @@ void try_springs(std::vector<Trial>& trials, const Candidate& candidate, double 
   });
 }
 
-// ---- Scattered samples --------------------------------------------------------------------------
+// ---- Scattered samples
 
 std::vector<Trial> scattered_trials(const Dem& dem) {
   const Size size = dem.size();
@@ -149,7 +149,6 @@ ChosenSprings choose_scattered(const Dem& dem, double X, const Run& run) {
 }
 
 // ---- Gaps: disks beside them
-// ----------------------------------------------------------------------
 
 struct Disk {
   int col, row;
@@ -311,7 +310,6 @@ ChosenSprings choose_clustered(const Dem& dem, const Raster<std::uint16_t>& dist
 }
 
 // ---- Contours
-// ------------------------------------------------------------------------------------
 
 /// The step between contour values: the smallest gap of the distinct known values, when all gaps
 /// are multiples of it; else 0. Looks at a sample of the known cells.

@@ -26,21 +26,19 @@ struct ChosenSprings {
   std::vector<HeldOut> held_out;  ///< the same, one by one
 };
 
-/// Distances (chamfer 5-7-11, in fifths of a cell, at most 65535) of all cells to the nearest known
-/// one.
+/// Distances (chamfer 5-7-11, in fifths of a cell, at most 65535) of all cells to the nearest known.
 Raster<std::uint16_t> distances_to_known(const Mask& known);
 
 /// Tells apart samples that lie at random, samples that leave large gaps, and contour lines.
-/// Method: mean distance of unknown cells to data, against that of random samples as dense;
-/// contours
-///         are gaps whose rim spans at most one step of the values.
+/// Method: mean distance of unknown cells to data, against that of random samples as dense; contours
+///         are lines, and gaps whose rim spans at most one step of the values.
 Layout layout_of(const Dem& dem, const Raster<std::uint16_t>& distance);
 
 /// Chooses the springs. `dem`: heights above their plane, 0 where unknown. X = (dy / dx)^2.
-/// Method: scattered: a tenth (sparse ones: a fifth) of the known cells hidden in one window of
-/// each quadrant. Clustered: disks
-///         as wide as the gaps, cut beside them, each in a window of its own; the mean of the
-///         logarithms of their errors. Both with a small charge for leaving the usual springs.
+/// Method: scattered: a tenth (sparse ones: a fifth) of the known cells hidden in one window of each
+///         quadrant. Clustered: disks as wide as the gaps, cut beside them, each in a window of its
+///         own; the mean of the logarithms of their errors. Both with a small charge for leaving the
+///         usual springs.
 ChosenSprings choose_springs(const Dem& dem, Layout layout, const Raster<std::uint16_t>& distance,
                              double X, const Run& run);
 

@@ -52,20 +52,21 @@ struct SplineOptions {
 std::vector<Field> fields(SplineOptions& options);
 
 /// Fills every unknown cell with the terrain spline.
-/// Method:   springs of orders one to three, free boundaries, on what is left after the known
-/// cells'
-///           least-squares plane; conjugate gradients preconditioned by one V-cycle, started from
-///           MCMD. With a nugget, known cells pull by springs instead of being met exactly.
+/// Method:   springs of orders one to three with free boundaries, after [szeliski1989] and
+///           [smith1990] (a membrane and a plate); they act on what is left after the known cells'
+///           least-squares plane, whose slopes shrink with what it explains. Conjugate gradients
+///           preconditioned by one multigrid V-cycle, started from MCMD. Where the data leave wide
+///           gaps, L1 is halved until the surface stays in the range of the data around it. With a
+///           nugget, known cells pull by springs instead of being met exactly.
 /// Needs:    at least one known cell.
-/// Gives:    all finite; known cells bit for bit (unless smooth_known). The report tells
-/// iterations,
+/// Gives:    all finite; known cells bit for bit (unless smooth_known). The report tells iterations,
 ///           estimated_error, residual, the parameters used, and `converged` (1 or 0).
 /// Exact on: constants; planes, to rounding.
 /// Sigma:    from surfaces drawn from the springs' distribution, scaled by the energy of the result
 ///           per known cell and, with automatic parameters, by the errors of hidden known cells:
 ///           72 % of them lie within one sigma (figures inside_1_sigma, inside_2_sigma).
-/// Cost:     O(cells), about 40 bytes a cell beside the result. Any number of threads gives the
-///           same bits.
+/// Cost:     O(cells), about 40 bytes a cell beside the result, 24 more when adaptive. Any number
+///           of threads gives the same bits.
 /// Throws:   std::invalid_argument, Cancelled.
 Filled fill_spline(const Dem& dem, const SplineOptions& options = {}, const Run& run = {});
 
