@@ -410,25 +410,27 @@ Raster<std::uint16_t> distances_to_known(const Mask& known) {
   return d;
 }
 
-/// How many of its eight neighbours a known cell knows, in the mean: 8 * density where the cells lie at
-/// random, more along lines.
-static double known_neighbours(const Mask& known) {
-  std::size_t pairs = 0, cells = 0;
-  for (int row = 0; row < known.rows(); ++row)
-    for (int col = 0; col < known.cols(); ++col) {
-      if (!known(col, row)) continue;
-      ++cells;
+/// Whether known cells have more known neighbours than cells that lie at random: as along lines.
+/// At random a cell knows 8 * density of its neighbours, give or take a part 1 / sqrt(pairs).
+static bool lie_together(const Mask& mask) {
+  double pairs = 0, known = 0;
+  for (int row = 0; row < mask.rows(); ++row)
+    for (int col = 0; col < mask.cols(); ++col) {
+      if (!mask(col, row)) continue;
+      ++known;
       for (const auto& [dx, dy] : {std::pair{1, 0}, {-1, 1}, {0, 1}, {1, 1}})
-        if (known.contains(col + dx, row + dy)) pairs += known(col + dx, row + dy) != 0;
+        if (mask.contains(col + dx, row + dy)) pairs += mask(col + dx, row + dy) != 0;
     }
-  return 2 * double(pairs) / double(std::max<std::size_t>(cells, 1));
+  if (pairs == 0) return false;
+  const double at_random = 4 * known * known / double(mask.size().cells());
+  return pairs > at_random * (1 + 5 / std::sqrt(pairs));
 }
 
 Layout layout_of(const Dem& dem, const Raster<std::uint16_t>& distance) {
   const double cells = double(dem.size().cells()), known = double(count(dem.known));
   if (known == cells) return Layout::scattered;
   const double density = known / cells;
-  if (density < 0.75 && known_neighbours(dem.known) >= 1.25 * 8 * density)
+  if (density < 0.75 && lie_together(dem.known))
     if (const double step = contour_step(dem);
         step > 0 && part_between_two_lines(dem, step) >= 0.06)
       return Layout::contours;
