@@ -9,8 +9,8 @@ namespace dem {
 
 /// How far the unknown cells of a surface lie outside the range of the known cells near them (about
 /// three times as far as the nearest one): root mean square, as a part of the root mean square of
-/// these ranges. Real terrain has 0.03 to 0.14 over samples of ten kinds of terrain; springs that
-/// shoot over a wide flat gap give more.
+/// these ranges. The truth had 0.00 to 0.14 in all cases tried, on nine terrains; springs that
+/// shoot over a wide flat gap gave 0.2 to 0.8.
 /// `distance`: to the nearest known cell, in fifths of a cell. Cost: O(cells), 11 bytes a cell.
 double overshoot(const Grid<double>& surface, const Mask& known,
                  const Raster<std::uint16_t>& distance);
