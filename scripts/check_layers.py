@@ -14,7 +14,7 @@ LAYERS = {
     "values": ["dem", "fields", "raster", "run"],
     "helpers": ["gradient", "parallel", "random"],  # private headers that any algorithm may use
     "algorithms": ["baseline", "draw", "evaluate", "holes", "mcmd", "sample", "spline"],
-    "methods": ["methods"],
+    "methods": ["generators", "methods"],
     "io": ["baselines", "cells", "crs", "gdal_raster", "gdal_support", "geodesy", "heightmap", "hgt", "image", "io",
            "nodata", "oiio_support", "staged_file"],
 }

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "dem/baseline.h"
+#include "dem/generators.h"
 #include "dem/mcmd.h"
 #include "dem/spline.h"
 
@@ -16,6 +17,11 @@ std::vector<FieldInfo> describe(const std::vector<Field>& fields) {
   for (const auto& f : fields)
     infos.push_back({f.name(), f.type(), f.unit(), f.range(), f.text(), f.doc(), f.choices()});
   return infos;
+}
+
+const std::vector<Generator>& generators() {
+  static const std::vector<Generator> table{};
+  return table;
 }
 
 const std::vector<FillMethod>& fill_methods() {
@@ -53,24 +59,37 @@ const std::vector<FillMethod>& fill_methods() {
   return table;
 }
 
-ChosenMethod find_method(const std::vector<FillMethod>& table, std::string_view name) {
+/// The row called `name`, "NAME" or "NAME:PRESET", and the settings of its preset.
+template <class Row>
+std::pair<const Row*, Settings> find_row(const std::vector<Row>& table, std::string_view kind,
+                                         std::string_view name) {
   const auto colon = name.find(':');
-  const auto method = std::ranges::find(table, name.substr(0, colon), &FillMethod::name);
+  const auto row = std::ranges::find(table, name.substr(0, colon), &Row::name);
   std::vector<std::string> names;
-  if (method == table.end()) {
-    for (const auto& m : table) names.push_back(m.name);
+  if (row == table.end()) {
+    for (const auto& r : table) names.push_back(r.name);
     throw std::invalid_argument(
-        fmt::format("unknown method \"{}\"; must be one of {}", name, fmt::join(names, ", ")));
+        fmt::format("unknown {} \"{}\"; must be one of {}", kind, name, fmt::join(names, ", ")));
   }
-  if (colon == std::string_view::npos) return {&*method, {}};
-  const auto preset = std::ranges::find(method->presets, name.substr(colon + 1), &Preset::name);
-  if (preset == method->presets.end()) {
-    for (const auto& p : method->presets) names.push_back(method->name + ":" + p.name);
+  if (colon == std::string_view::npos) return {&*row, {}};
+  const auto preset = std::ranges::find(row->presets, name.substr(colon + 1), &Preset::name);
+  if (preset == row->presets.end()) {
+    for (const auto& p : row->presets) names.push_back(row->name + ":" + p.name);
     throw std::invalid_argument(
-        fmt::format("unknown preset \"{}\"; {} has {}", name, method->name,
+        fmt::format("unknown preset \"{}\"; {} has {}", name, row->name,
                     names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
   }
-  return {&*method, preset->settings};
+  return {&*row, preset->settings};
+}
+
+ChosenMethod find_method(const std::vector<FillMethod>& table, std::string_view name) {
+  const auto [method, settings] = find_row(table, "method", name);
+  return {method, settings};
+}
+
+ChosenGenerator find_generator(std::string_view name) {
+  const auto [generator, settings] = find_row(generators(), "generator", name);
+  return {generator, settings};
 }
 
 std::string_view default_fill_method() { return "spline"; }

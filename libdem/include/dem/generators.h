@@ -1,0 +1,69 @@
+#pragma once
+// The table of terrain generators: names -> functions, as dem/methods.h has those of fill methods.
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "dem/dem.h"
+#include "dem/methods.h"
+
+namespace dem {
+
+/// Where a generated terrain shall lie.
+struct Canvas {
+  Size size{1025, 1025};
+  Spacing spacing{30, 30};
+  GeoRef ref;
+};
+
+struct Generator {
+  std::string name;
+  std::string summary;   ///< one line
+  std::string citation;  ///< key in REFERENCES.md
+  std::vector<FieldInfo> fields;
+  std::vector<Preset> presets;
+  std::string image;  ///< what the image shows that it starts from; "" when it takes none
+
+  /// Makes a terrain; all its cells are known. `image` has grey levels from 0 (black) to 1 (white),
+  /// and the canvas its size; it is empty when the generator takes none.
+  /// Throws std::invalid_argument for bad settings, sizes or images, Cancelled.
+  std::function<Dem(const Canvas&, const Raster<float>& image, const Settings&, const Run&)>
+      generate;
+};
+
+/// A row of the table from an Options struct with `fields(Options&)` and a function
+/// `Raster<float>(const Canvas&, const Options&, const Run&)`.
+template <class Options, class Generate>
+Generator make_generator(std::string name, std::string summary, std::string citation,
+                         std::vector<Preset> presets, Generate generate) {
+  Options defaults;
+  return {std::move(name),
+          std::move(summary),
+          std::move(citation),
+          describe(fields(defaults)),
+          std::move(presets),
+          "",
+          [generate](const Canvas& canvas, const Raster<float>&, const Settings& settings,
+                     const Run& run) {
+            Options options;
+            apply(settings, fields(options));
+            return Dem{generate(canvas, options, run), Mask(canvas.size, 1), canvas.ref,
+                       canvas.spacing};
+          }};
+}
+
+const std::vector<Generator>& generators();
+
+/// A generator with its preset's settings put before the caller's.
+struct ChosenGenerator {
+  const Generator* generator = nullptr;
+  Settings settings;
+};
+
+/// Finds "noise" or "noise:ridged". Throws std::invalid_argument that lists the names there are.
+ChosenGenerator find_generator(std::string_view name);
+
+}  // namespace dem
