@@ -9,6 +9,8 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "dem/outliers.h"
+
 namespace dem::app {
 namespace fs = std::filesystem;
 
@@ -143,6 +145,19 @@ bool holds_metadata(const std::string& path, const std::string& format) {
   std::string name = fs::path(path).filename().string();
   std::ranges::transform(name, name.begin(), [](unsigned char c) { return char(std::tolower(c)); });
   return !name.ends_with(".hgt") && !name.ends_with(".hgt.gz") && !name.ends_with(".hgt.zip");
+}
+
+void warn_of_outliers(const Dem& dem, Shell& shell) {
+  const Outliers found = find_outliers(dem);
+  if (found.count == 0) return;
+  std::vector<std::string> names;
+  for (const auto& o : found.first)
+    names.push_back(fmt::format("{} m in cell {},{}", o.z, o.col, o.row));
+  shell.say(
+      "warning: {} known heights lie outside {:.0f} to {:.0f} m and bend the surface around them: "
+      "{}{}; if they mean \"unknown\", --nodata VALUE says so",
+      grouped(found.count), found.low_m, found.high_m, fmt::join(names, ", "),
+      found.count > names.size() ? ", ..." : "");
 }
 
 Mask removed_cells(const Dem& whole, const Dem& sampled) {

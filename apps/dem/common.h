@@ -81,6 +81,9 @@ std::string percent_of(std::size_t cells, std::size_t all);
 /// Whether a file written so can say how it was made: an .hgt cannot.
 bool holds_metadata(const std::string& path, const std::string& format);
 
+/// Warns of known heights that cannot be meant, by name.
+void warn_of_outliers(const Dem& dem, Shell& shell);
+
 /// Cells known in `whole` and unknown in `sampled`.
 Mask removed_cells(const Dem& whole, const Dem& sampled);
 

@@ -4,10 +4,40 @@
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <new>
 #include <span>
 #include <vector>
 
 namespace dem {
+
+/// Memory for `bytes` bytes of cells; large blocks ask the system for large pages, which are ready
+/// sooner. Throws std::bad_alloc.
+void* allocate_cells(std::size_t bytes);
+void free_cells(void* cells) noexcept;
+
+/// The allocator of rasters.
+template <class T>
+struct CellAllocator {
+  using value_type = T;
+
+  CellAllocator() = default;
+  template <class U>
+  CellAllocator(const CellAllocator<U>&) {}
+
+  T* allocate(std::size_t n) {
+    if (n > std::numeric_limits<std::ptrdiff_t>::max() / sizeof(T))
+      throw std::bad_array_new_length();
+    return static_cast<T*>(allocate_cells(n * sizeof(T)));
+  }
+  void deallocate(T* cells, std::size_t) noexcept { free_cells(cells); }
+  template <class U>
+  void construct(U* cell) {
+    ::new (static_cast<void*>(cell)) U;  // a number without a value stays unset
+  }
+
+  bool operator==(const CellAllocator&) const = default;
+};
 
 /// Width and height of a raster in cells.
 struct Size {
@@ -25,6 +55,14 @@ class Raster {
  public:
   Raster() = default;
   explicit Raster(Size size, T value = {}) : size_(size), cells_(size.cells(), value) {}
+
+  /// A raster whose cells are all to be written before they are read: nothing is spent on zeros.
+  static Raster unset(Size size) {
+    Raster raster;
+    raster.size_ = size;
+    raster.cells_.resize(size.cells());
+    return raster;
+  }
 
   Size size() const { return size_; }
   int cols() const { return size_.cols; }
@@ -56,7 +94,7 @@ class Raster {
   }
 
   Size size_;
-  std::vector<T> cells_;
+  std::vector<T, CellAllocator<T>> cells_;
 };
 
 /// One byte a cell: 1 = known (measured, or chosen), 0 = unknown. The same polarity everywhere.

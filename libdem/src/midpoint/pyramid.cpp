@@ -238,8 +238,8 @@ Pyramid::Pyramid(const Midpoint& fill) : fill_(fill), zeros_(std::size_t(fill.de
   }
   for (std::size_t k = 1; k < levels_.size(); ++k) {
     const Size size{levels_[k].x.n, levels_[k].y.n};
-    levels_[k].z = Raster<float>(size);
-    levels_[k].weight = Raster<float>(size);
+    levels_[k].z = Raster<float>::unset(size);
+    levels_[k].weight = Raster<float>::unset(size);
   }
 }
 
@@ -477,7 +477,7 @@ Raster<float> Pyramid::displace(const Bend& bend, const Noise& noise, std::optio
   bend_ = bend;
   noise_ = noise;
   const float root = root_m ? float(*root_m) - fill_.reference_m : mean_of_known_roots();
-  Raster<float> out(fill_.dem.size());
+  auto out = Raster<float>::unset(fill_.dem.size());
   if (levels_.size() == 1) {  // at most 2 x 2 cells: all roots
     for (std::size_t i = 0; i < out.cells().size(); ++i)
       out.cells()[i] =

@@ -12,6 +12,13 @@ namespace {
 constexpr double mix = 0.95;         // the rest is C_iso
 constexpr double floor_part = 1e-3;  // of the mean trace: where the surface is flat, W = 1
 
+// W's eigenvalues lie between 0.34 and 27, so steps of 1 / 1000 change nothing that matters.
+constexpr float step = 1e-3f;
+
+DEM_INLINE inline Tensor::Weight rounded(float weight) {
+  return Tensor::Weight(weight * (1 / step) + (weight < 0 ? -0.5f : 0.5f));
+}
+
 /// Second differences of one row in orthonormal coordinates, from the rows above and below.
 template <class T>
 DEM_INLINE inline void bends(const T* up, const T* here, const T* down, float X, float root_2X,
@@ -56,9 +63,9 @@ DEM_CLONES void blur_row(const float* in, const float* weight, int radius, int b
 
 /// W - 1 of one row from the blurred products.
 DEM_CLONES void weights_row(const float* const* c, float floor, int begin, int end,
-                            float* const* w) {
+                            Tensor::Weight* const* w) {
   const float *c0 = c[0], *c1 = c[1], *c2 = c[2], *c3 = c[3], *c4 = c[4], *c5 = c[5];
-  float *w0 = w[0], *w1 = w[1], *w2 = w[2], *w3 = w[3], *w4 = w[4], *w5 = w[5];
+  Tensor::Weight *w0 = w[0], *w1 = w[1], *w2 = w[2], *w3 = w[3], *w4 = w[4], *w5 = w[5];
   DEM_INDEPENDENT
   for (int x = begin; x < end; ++x) {
     // C' = mix C / trace + (1 - mix) C_iso; C_iso = 3/8 1/8 on the ends, 1/4 in the middle.
@@ -72,37 +79,39 @@ DEM_CLONES void weights_row(const float* const* c, float floor, int begin, int e
     // Inverse by cofactors, over 3.
     const float aa = e * g - f * f, ab = d * f - b * g, ad = b * f - d * e;
     const float third = 1 / (3 * (a * aa + b * ab + d * ad));
-    w0[x] = aa * third - 1;
-    w1[x] = ab * third;
-    w2[x] = ad * third;
-    w3[x] = (a * g - d * d) * third - 1;
-    w4[x] = (b * d - a * f) * third;
-    w5[x] = (a * e - b * b) * third - 1;
+    w0[x] = rounded(aa * third - 1);
+    w1[x] = rounded(ab * third);
+    w2[x] = rounded(ad * third);
+    w3[x] = rounded((a * g - d * d) * third - 1);
+    w4[x] = rounded((b * d - a * f) * third);
+    w5[x] = rounded((a * e - b * b) * third - 1);
   }
 }
 
 /// Moments of the cells of one row: along x, along y, and their share of the corners.
 template <class T>
-DEM_INLINE inline void moments(const T* up, const T* here, const T* down, const float* const* w,
-                               float X, float root_2X, Span span, float* along_x, float* along_y,
-                               float* twist) {
-  const float *w0 = w[0], *w1 = w[1], *w2 = w[2], *w4 = w[4], *w5 = w[5];
+DEM_INLINE inline void moments(const T* up, const T* here, const T* down,
+                               const Tensor::Weight* const* w, float X, float root_2X, Span span,
+                               float* along_x, float* along_y, float* twist) {
+  const Tensor::Weight *w0 = w[0], *w1 = w[1], *w2 = w[2], *w4 = w[4], *w5 = w[5];
+  const float step_x = step * X, step_twist = step * 0.25f * root_2X;
   DEM_INDEPENDENT
   for (int x = span.begin; x < span.end; ++x) {
     float h[3];
     bends(up, here, down, X, root_2X, x, h);
-    along_x[x] = X * (w0[x] * h[0] + w1[x] * h[1] + w2[x] * h[2]);
-    along_y[x] = w2[x] * h[0] + w4[x] * h[1] + w5[x] * h[2];
-    twist[x] = 0.25f * root_2X * (w1[x] * h[0] + w4[x] * h[2]);
+    const float xx_xy = float(w1[x]), xx_yy = float(w2[x]), xy_yy = float(w4[x]);
+    along_x[x] = step_x * (float(w0[x]) * h[0] + xx_xy * h[1] + xx_yy * h[2]);
+    along_y[x] = step * (xx_yy * h[0] + xy_yy * h[1] + float(w5[x]) * h[2]);
+    twist[x] = step_twist * (xx_xy * h[0] + xy_yy * h[2]);
   }
 }
 DEM_CLONES void moments_row(const float* up, const float* here, const float* down,
-                            const float* const* w, float X, float root_2X, Span span,
+                            const Tensor::Weight* const* w, float X, float root_2X, Span span,
                             float* along_x, float* along_y, float* twist) {
   moments(up, here, down, w, X, root_2X, span, along_x, along_y, twist);
 }
 DEM_CLONES void moments_row(const double* up, const double* here, const double* down,
-                            const float* const* w, float X, float root_2X, Span span,
+                            const Tensor::Weight* const* w, float X, float root_2X, Span span,
                             float* along_x, float* along_y, float* twist) {
   moments(up, here, down, w, X, root_2X, span, along_x, along_y, twist);
 }
@@ -110,23 +119,23 @@ DEM_CLONES void moments_row(const double* up, const double* here, const double* 
 /// Moments at the corners (x + 1/2, y + 1/2) between two rows.
 template <class T>
 DEM_INLINE inline void corners(const T* here, const T* below, const float* twist,
-                               const float* twist_below, const float* w, const float* w_below,
-                               float half_X, Span span, float* out) {
+                               const float* twist_below, const Tensor::Weight* w,
+                               const Tensor::Weight* w_below, float half_X, Span span, float* out) {
   DEM_INDEPENDENT
   for (int x = span.begin; x < span.end; ++x) {
     const float q = float((below[x + 1] - below[x]) - (here[x + 1] - here[x]));
-    const float weight = half_X * ((w[x] + w[x + 1]) + (w_below[x] + w_below[x + 1]));
+    const float weight = half_X * float(w[x] + w[x + 1] + w_below[x] + w_below[x + 1]);
     out[x] = (twist[x] + twist[x + 1]) + (twist_below[x] + twist_below[x + 1]) + weight * q;
   }
 }
 DEM_CLONES void corners_row(const float* here, const float* below, const float* twist,
-                            const float* twist_below, const float* w, const float* w_below,
-                            float half_X, Span span, float* out) {
+                            const float* twist_below, const Tensor::Weight* w,
+                            const Tensor::Weight* w_below, float half_X, Span span, float* out) {
   corners(here, below, twist, twist_below, w, w_below, half_X, span, out);
 }
 DEM_CLONES void corners_row(const double* here, const double* below, const float* twist,
-                            const float* twist_below, const float* w, const float* w_below,
-                            float half_X, Span span, float* out) {
+                            const float* twist_below, const Tensor::Weight* w,
+                            const Tensor::Weight* w_below, float half_X, Span span, float* out) {
   corners(here, below, twist, twist_below, w, w_below, half_X, span, out);
 }
 
@@ -167,7 +176,7 @@ void in_row_bands(int rows, const Work& work) {
 }  // namespace
 
 Tensor::Tensor(Size size, const Spans& spans, double X) : size_(size), spans_(spans), X_(X) {
-  for (auto& w : w_) w = Grid<float>(size);
+  for (auto& w : w_) w = Grid<Weight>(size);
   std::vector<Span> parts;
   for (int y = 0; y < size.rows; ++y) {
     parts.clear();
@@ -206,7 +215,7 @@ void Tensor::estimate(const Grid<double>& z, double sigma) {
   double trace = 0, cells = 0;
   for (int y = 0; y < rows; ++y) trace += traces[std::size_t(y)], cells += counts[std::size_t(y)];
   if (!(trace > 0)) {
-    for (auto& w : w_) w = Grid<float>(size_);
+    for (auto& w : w_) w = Grid<Weight>(size_);
     return;
   }
   const float floor = float(std::max(floor_part * trace / cells, 1e-30));
@@ -236,7 +245,7 @@ void Tensor::estimate(const Grid<double>& z, double sigma) {
       make_products(y + radius);
       if (y == 0 || y == rows - 1) continue;
       std::array<const float*, 6> c;
-      std::array<float*, 6> w;
+      std::array<Weight*, 6> w;
       for (int i = 0; i < 6; ++i) {
         c[std::size_t(i)] = plane(blurred, 0, i);
         w[std::size_t(i)] = w_[std::size_t(i)].row(y);
@@ -261,7 +270,7 @@ template <class T>
 void Tensor::add_to(const Grid<T>& u, float sign, const Grid<float>& dinv, Grid<float>& out) const {
   const int cols = size_.cols, rows = size_.rows;
   if (cols < 3 || rows < 3) return;
-  const float X = float(X_), root_2X = float(std::sqrt(2 * X_)), half_X = float(X_ / 2);
+  const float X = float(X_), root_2X = float(std::sqrt(2 * X_)), half_X = float(X_ / 2) * step;
   in_row_bands(rows, [&](int y0, int y1) {
     Ring4 along_x(cols), along_y(cols), twist(cols), corner(cols);
     const auto make_moments = [&](int y) {
@@ -272,7 +281,7 @@ void Tensor::add_to(const Grid<T>& u, float sign, const Grid<float>& dinv, Grid<
         for (Ring4* ring : {&along_x, &along_y, &twist}) clear_gaps(ring->row(y), {}, cols);
         return;
       }
-      std::array<const float*, 6> w;
+      std::array<const Weight*, 6> w;
       for (std::size_t i = 0; i < 6; ++i) w[i] = w_[i].row(y);
       for (const Span s : spans)
         moments_row(u.row(y - 1), u.row(y), u.row(y + 1), w.data(), X, root_2X, s, along_x.row(y),

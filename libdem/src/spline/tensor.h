@@ -4,6 +4,7 @@
 // Private to the library.
 
 #include <array>
+#include <cstdint>
 
 #include "grid.h"
 
@@ -14,6 +15,8 @@ namespace dem {
 /// lives on the cell's four corners; its square is their mean, so that the sum stays positive.
 class Tensor {
  public:
+  using Weight = std::int16_t;  ///< in steps of 1 / 1000
+
   /// Weights are kept where they reach a cell of `spans`. X = (dy / dx)^2.
   Tensor(Size size, const Spans& spans, double X);
 
@@ -33,7 +36,7 @@ class Tensor {
   const Spans& spans_;  ///< rows and columns of free cells
   Spans around_;        ///< the same, one cell wider to all sides
   double X_;
-  std::array<Grid<float>, 6> w_;  ///< W - 1: 11, 12, 13, 22, 23, 33; 0 on the rim
+  std::array<Grid<Weight>, 6> w_;  ///< W - 1: 11, 12, 13, 22, 23, 33; 0 on the rim
 };
 
 }  // namespace dem
