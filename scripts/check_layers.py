@@ -11,9 +11,9 @@ import tempfile
 
 # The layer of each file. A header dem/NAME.h and its source NAME.cpp share a name and a layer.
 LAYERS = {
-    "values": ["dem", "fields", "raster", "run"],
-    "helpers": ["gradient", "parallel", "random"],  # private headers that any algorithm may use
-    "algorithms": ["baseline", "draw", "evaluate", "holes", "mcmd", "outliers", "sample", "spline"],
+    "values": ["canvas", "dem", "fields", "raster", "run"],
+    "helpers": ["gradient", "parallel", "random", "vectorised"],  # private headers that any algorithm may use
+    "algorithms": ["baseline", "draw", "evaluate", "holes", "mcmd", "noise", "outliers", "sample", "spline"],
     "methods": ["generators", "methods"],
     "io": ["baselines", "cells", "crs", "gdal_raster", "gdal_support", "geodesy", "heightmap", "hgt", "image", "io",
            "nodata", "oiio_support", "staged_file"],

@@ -1,60 +1,109 @@
-// dem methods: what `dem fill --method` and `--set` take.
+// dem methods: what `dem fill`, `dem generate` and their `--set` take.
 
 #include "dem/methods.h"
 
 #include <CLI/CLI.hpp>
 
 #include "dem/baselines.h"
+#include "dem/generators.h"
 #include "verbs.h"
 
 namespace dem::app {
 namespace {
 
-Json as_json(const FillMethod& m) {
-  Json fields = Json::array(), presets = Json::array();
-  for (const auto& f : m.fields)
-    fields.push_back({{"name", f.name},
-                      {"type", f.type},
-                      {"unit", f.unit},
-                      {"range", f.range},
-                      {"default", f.default_text},
-                      {"choices", f.choices},
-                      {"doc", f.doc}});
-  for (const auto& p : m.presets) {
-    Json settings = Json::object();
-    for (const auto& [key, value] : p.settings) settings[key] = value;
-    presets.push_back({{"name", p.name}, {"doc", p.doc}, {"settings", settings}});
-  }
-  return {{"name", m.name},         {"summary", m.summary},
-          {"citation", m.citation}, {"default", m.name == default_fill_method()},
-          {"fields", fields},       {"presets", presets}};
+Json as_json(const std::vector<FieldInfo>& fields) {
+  Json all = Json::array();
+  for (const auto& f : fields)
+    all.push_back({{"name", f.name},
+                   {"type", f.type},
+                   {"unit", f.unit},
+                   {"range", f.range},
+                   {"default", f.default_text},
+                   {"choices", f.choices},
+                   {"doc", f.doc}});
+  return all;
 }
 
-std::string as_text(const FillMethod& m) {
-  std::string text = fmt::format("{}  {}{}\n", m.name, m.summary,
-                                 m.citation.empty() ? "" : " [" + m.citation + "]");
-  for (const auto& f : m.fields) {
+Json as_json(const std::vector<Preset>& presets) {
+  Json all = Json::array();
+  for (const auto& p : presets) {
+    Json settings = Json::object();
+    for (const auto& [key, value] : p.settings) settings[key] = value;
+    all.push_back({{"name", p.name}, {"doc", p.doc}, {"settings", settings}});
+  }
+  return all;
+}
+
+Json as_json(const FillMethod& m) {
+  return {{"name", m.name},
+          {"summary", m.summary},
+          {"citation", m.citation},
+          {"default", m.name == default_fill_method()},
+          {"fields", as_json(m.fields)},
+          {"presets", as_json(m.presets)}};
+}
+
+Json as_json(const Generator& g) {
+  return {{"name", g.name},
+          {"summary", g.summary},
+          {"citation", g.citation},
+          {"image", g.image},
+          {"globe", g.globe},
+          {"fields", as_json(g.fields)},
+          {"presets", as_json(g.presets)}};
+}
+
+/// A row of either table.
+template <class Row>
+std::string as_text(const Row& row) {
+  std::string text = fmt::format("{}  {}{}\n", row.name, row.summary,
+                                 row.citation.empty() ? "" : " [" + row.citation + "]");
+  if constexpr (requires { row.image; })
+    if (!row.image.empty()) text += fmt::format("  starts from an image: {}\n", row.image);
+  for (const auto& f : row.fields) {
     const std::string unit = f.unit.empty() ? "" : " " + f.unit;
     text += fmt::format("  {:<18} {}{}   ({}{})\n      {}\n", f.name, f.default_text, unit, f.type,
                         f.range.empty() ? "" : ", " + f.range, f.doc);
   }
-  for (const auto& p : m.presets) {
+  for (const auto& p : row.presets) {
     std::string settings;
     for (const auto& [key, value] : p.settings) settings += " " + key + "=" + value;
-    text += fmt::format("  preset {}:{}   {}\n     {}\n", m.name, p.name, p.doc, settings);
+    text += fmt::format("  preset {}:{}   {}\n     {}\n", row.name, p.name, p.doc, settings);
   }
   return text;
 }
 
-int methods(const std::string& name, Shell& shell) {
-  Json fill = Json::array();
-  std::string text;
-  for (const auto& m : all_fill_methods()) {
-    if (!name.empty() && &m != find_method(all_fill_methods(), name).method) continue;
-    fill.push_back(as_json(m));
-    text += (text.empty() ? "" : "\n") + as_text(m);
+/// The rows called `name` (all, when it is empty), as JSON, their text added to `text`.
+template <class Row>
+Json rows_of(const std::vector<Row>& table, const std::string& name, const std::string& title,
+             std::string& text) {
+  Json rows = Json::array();
+  for (const auto& row : table) {
+    if (!name.empty() && row.name != name) continue;
+    if (name.empty() && rows.empty()) text += (text.empty() ? "" : "\n") + title + "\n";
+    if (name.empty() || !rows.empty()) text += "\n";
+    text += as_text(row);
+    rows.push_back(as_json(row));
   }
-  shell.print({{"fill", fill}, {"generators", Json::array()}}, text);
+  return rows;
+}
+
+std::string all_names() {
+  std::vector<std::string> names;
+  for (const auto& m : all_fill_methods()) names.push_back(m.name);
+  for (const auto& g : generators()) names.push_back(g.name);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+int methods(const std::string& wanted, Shell& shell) {
+  const std::string name = wanted.substr(0, wanted.find(':'));
+  std::string text;
+  const Json fill = rows_of(all_fill_methods(), name, "Methods of `dem fill`:", text);
+  const Json made = rows_of(generators(), name, "Generators of `dem generate`:", text);
+  if (fill.empty() && made.empty())
+    throw std::invalid_argument(
+        fmt::format("unknown method \"{}\"; must be one of {}", wanted, all_names()));
+  shell.print({{"fill", fill}, {"generators", made}}, text);
   return kDone;
 }
 
@@ -63,12 +112,12 @@ int methods(const std::string& name, Shell& shell) {
 void add_methods(CLI::App& app, Shell& shell) {
   const auto name = std::make_shared<std::string>();
   auto* verb =
-      add_verb(app, shell, "methods", "Every fill method: settings, ranges, defaults, citation",
+      add_verb(app, shell, "methods", "Every fill method and generator: settings, ranges, defaults",
                "  dem methods\n"
-               "  dem methods mcmd                   # one method\n"
+               "  dem methods mcmd                   # one of them\n"
                "  dem methods --json | jq '.fill[].name'",
                [name, &shell] { return methods(*name, shell); });
-  verb->add_option("NAME", *name, "one method; all, when left out")->type_name("");
+  verb->add_option("NAME", *name, "one of them; all, when left out")->type_name("");
 }
 
 }  // namespace dem::app

@@ -8,6 +8,7 @@
 #include "dem/baseline.h"
 #include "dem/generators.h"
 #include "dem/mcmd.h"
+#include "dem/noise.h"
 #include "dem/spline.h"
 
 namespace dem {
@@ -20,7 +21,15 @@ std::vector<FieldInfo> describe(const std::vector<Field>& fields) {
 }
 
 const std::vector<Generator>& generators() {
-  static const std::vector<Generator> table{};
+  static const std::vector<Generator> table{
+      make_generator<NoiseOptions>(
+          "noise", "sums of noise, with roughness that may change from place to place",
+          "musgrave1989",
+          {{"foothills",
+            "rough where high, smooth where low (plates 3 and 11)",
+            {{"law", "heterogeneous"}, {"c_t", "0.5"}}}},
+          generate_noise),
+  };
   return table;
 }
 

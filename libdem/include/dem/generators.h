@@ -7,17 +7,11 @@
 #include <utility>
 #include <vector>
 
+#include "dem/canvas.h"
 #include "dem/dem.h"
 #include "dem/methods.h"
 
 namespace dem {
-
-/// Where a generated terrain shall lie.
-struct Canvas {
-  Size size{1025, 1025};
-  Spacing spacing{30, 30};
-  GeoRef ref;
-};
 
 struct Generator {
   std::string name;
@@ -25,7 +19,8 @@ struct Generator {
   std::string citation;  ///< key in REFERENCES.md
   std::vector<FieldInfo> fields;
   std::vector<Preset> presets;
-  std::string image;  ///< what the image shows that it starts from; "" when it takes none
+  std::string image;   ///< what the image shows that it starts from; "" when it takes none
+  bool globe = false;  ///< whether the canvas is a grid of degrees on the whole Earth
 
   /// Makes a terrain; all its cells are known. `image` has grey levels from 0 (black) to 1 (white),
   /// and the canvas its size; it is empty when the generator takes none.
@@ -46,12 +41,12 @@ Generator make_generator(std::string name, std::string summary, std::string cita
           describe(fields(defaults)),
           std::move(presets),
           "",
+          false,
           [generate](const Canvas& canvas, const Raster<float>&, const Settings& settings,
                      const Run& run) {
             Options options;
             apply(settings, fields(options));
-            return Dem{generate(canvas, options, run), Mask(canvas.size, 1), canvas.ref,
-                       canvas.spacing};
+            return on_canvas(canvas, generate(canvas, options, run));
           }};
 }
 

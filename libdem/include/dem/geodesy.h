@@ -1,6 +1,7 @@
 #pragma once
 // Lengths on the ground, by GeographicLib.
 
+#include <string>
 #include <vector>
 
 #include "dem/dem.h"
@@ -9,6 +10,10 @@ namespace dem {
 
 /// Whether the coordinates are degrees of longitude and latitude.
 bool is_geographic(const GeoRef& ref);
+
+/// The coordinate system that a person names: "EPSG:32619", WKT, PROJ's words. "" for "". Throws
+/// std::invalid_argument when it is unknown, or has no plane or geographic coordinates.
+std::string crs_wkt(const std::string& name);
 
 /// Size of a cell in metres, one for each row. Geographic: geodesic lengths on the CRS's ellipsoid
 /// at the row's centre. Projected: the CRS's linear unit. No CRS: units are metres. Throws

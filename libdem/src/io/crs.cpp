@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 #include <ogr_spatialref.h>
 
+#include <memory>
 #include <numbers>
 #include <stdexcept>
 
+#include "dem/geodesy.h"
 #include "gdal_support.h"
 
 namespace dem {
@@ -32,7 +34,29 @@ CrsUnits parse(const std::string& wkt) {
   return units;
 }
 
+struct FreeText {
+  void operator()(char* text) const { CPLFree(text); }
+};
+
 }  // namespace
+
+std::string crs_wkt(const std::string& name) {
+  if (name.empty()) return "";
+  const GdalErrors quiet;
+  OGRSpatialReference crs;
+  const char* const only_names[] = {"ALLOW_NETWORK_ACCESS=NO", "ALLOW_FILE_ACCESS=NO", nullptr};
+  const bool known = crs.SetFromUserInput(name.c_str(), only_names) == OGRERR_NONE;
+  if (!known || (!crs.IsGeographic() && !crs.IsProjected()))
+    throw std::invalid_argument(fmt::format(
+        "crs = {}; must be a projected or geographic coordinate system, e.g. EPSG:32619",
+        name.substr(0, 60)));
+  char* text = nullptr;
+  const OGRErr error = crs.exportToWkt(&text);
+  const std::unique_ptr<char, FreeText> owner(text);
+  if (error != OGRERR_NONE || !text)
+    throw std::invalid_argument(fmt::format("crs = {}; has no description in WKT", name));
+  return text;
+}
 
 CrsUnits crs_units(const std::string& wkt) {
   if (wkt.empty()) return {};

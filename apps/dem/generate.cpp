@@ -1,0 +1,217 @@
+// dem generate: terrain from nothing, or from an image.
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <optional>
+
+#include "dem/generators.h"
+#include "dem/geodesy.h"
+#include "verbs.h"
+
+namespace dem::app {
+namespace {
+
+struct Options {
+  std::string name;
+  std::vector<std::string> files;  // [IMAGE] OUT
+  std::string size, cell, crs, origin, format;
+  std::optional<std::uint64_t> seed;
+  std::vector<std::string> set;
+};
+
+/// "A" or "A<separator>B" as two numbers.
+std::pair<double, double> parse_pair(std::string_view option, const std::string& text,
+                                     char separator, std::string_view must_be) {
+  const auto at = text.find(separator);
+  const double first = parse_number(option, text.substr(0, at), must_be);
+  if (at == std::string::npos) return {first, first};
+  return {first, parse_number(option, text.substr(at + 1), must_be)};
+}
+
+Size parse_size(const std::string& text) {
+  const auto must_be = "N or WxH, whole numbers from 1 to 1000000, e.g. 1025 or 800x600";
+  const auto [cols, rows] = parse_pair("size", text, 'x', must_be);
+  for (const double side : {cols, rows})
+    if (side < 1 || side > 1e6 || side != std::floor(side))
+      throw std::invalid_argument(fmt::format("size = {}; must be {}", text, must_be));
+  return {int(cols), int(rows)};
+}
+
+Spacing parse_cell(const std::string& text) {
+  const auto must_be = "METRES or DXxDY, above 0, e.g. 30";
+  const auto [dx, dy] = parse_pair("cell", text, 'x', must_be);
+  if (!(dx > 0) || !(dy > 0))
+    throw std::invalid_argument(fmt::format("cell = {}; must be {}", text, must_be));
+  return {dx, dy};
+}
+
+/// The whole Earth in degrees, cells centred half a cell from the antimeridian and the poles.
+Canvas globe(const Options& o, Size size) {
+  for (const auto& [option, text] :
+       {std::pair{"cell", o.cell}, {"crs", o.crs}, {"origin", o.origin}})
+    if (!text.empty())
+      throw std::invalid_argument(
+          fmt::format("{} = {}; {} makes the whole Earth in EPSG:4326, give --size alone", option,
+                      text, o.name));
+  const double dlon = 360.0 / size.cols, dlat = 180.0 / size.rows;
+  Canvas canvas{
+      size, {}, {{-180 + dlon / 2, dlon, 0, 90 - dlat / 2, 0, -dlat}, crs_wkt("EPSG:4326")}};
+  canvas.spacing = middle_spacing(canvas.ref, size);
+  return canvas;
+}
+
+/// Cells of so many metres from the north-west one on. In degrees (or feet), the cell is what spans
+/// so many metres there.
+Canvas plane(const Options& o, Size size) {
+  Canvas canvas;
+  canvas.size = size;
+  canvas.spacing = parse_cell(o.cell.empty() ? "30" : o.cell);
+  const auto must_be = "X,Y of the north-west cell in the CRS's units, e.g. 305000,4910000";
+  if (!o.origin.empty() && o.origin.find(',') == std::string::npos)
+    throw std::invalid_argument(fmt::format("origin = {}; must be {}", o.origin, must_be));
+  const auto [x, y] =
+      o.origin.empty() ? std::pair{0.0, 0.0} : parse_pair("origin", o.origin, ',', must_be);
+  canvas.ref = {{x, 1, 0, y, 0, -1}, crs_wkt(o.crs)};
+  const Spacing unit = middle_spacing(canvas.ref, {1, 1});
+  canvas.ref.to_world[1] = canvas.spacing.dx_m / unit.dx_m;
+  canvas.ref.to_world[5] = -canvas.spacing.dy_m / unit.dy_m;
+  return canvas;
+}
+
+/// Grey levels of the image that the generator starts from; none when it takes none.
+Raster<float> read_image(const Options& o, const Generator& generator, const Run& run) {
+  if (o.files.size() > 2)
+    throw std::invalid_argument(fmt::format("unexpected argument {}", o.files[2]));
+  if (generator.image.empty()) {
+    if (o.files.size() == 2)
+      throw std::invalid_argument(fmt::format("unexpected argument {}; {} starts from no image",
+                                              o.files[1], generator.name));
+    return {};
+  }
+  if (o.files.size() != 2)
+    throw std::invalid_argument(fmt::format("{} needs an image: dem generate {} IMAGE OUT ({})",
+                                            generator.name, generator.name, generator.image));
+  ReadOptions grey;
+  grey.heights = {0, 1};
+  return read_dem(o.files[0], grey, run).dem.z;
+}
+
+Size canvas_size(const Options& o, const Generator& generator, const Raster<float>& image) {
+  if (!image.empty()) {
+    if (!o.size.empty() && parse_size(o.size) != image.size())
+      throw std::invalid_argument(fmt::format("size = {}; the image has {} x {}, leave --size out",
+                                              o.size, image.cols(), image.rows()));
+    return image.size();
+  }
+  if (!o.size.empty()) return parse_size(o.size);
+  return generator.globe ? Size{1440, 720} : Canvas{}.size;
+}
+
+ChosenGenerator choose(const Options& o) {
+  ChosenGenerator chosen = find_generator(o.name);
+  for (const auto& text : o.set) chosen.settings.push_back(parse_setting(text));
+  if (o.seed) {
+    const auto& fields = chosen.generator->fields;
+    if (std::ranges::find(fields, "seed", &FieldInfo::name) == fields.end())
+      throw std::invalid_argument("seed: generator " + chosen.generator->name +
+                                  " takes no random numbers");
+    chosen.settings.emplace_back("seed", std::to_string(*o.seed));
+  }
+  return chosen;
+}
+
+std::string settings_text(const Settings& settings) {
+  std::string text;
+  for (const auto& [key, value] : settings) text += (text.empty() ? "" : " ") + key + "=" + value;
+  return text;
+}
+
+int generate(const Options& o, Shell& shell) {
+  const ChosenGenerator chosen = choose(o);
+  const std::string& out = o.files.back();
+  check_writable(out, shell.overwrite);
+  const Run run = shell.run();
+  const Raster<float> image = read_image(o, *chosen.generator, run.part(0, 0.1));
+  const Size size = canvas_size(o, *chosen.generator, image);
+  const Canvas canvas = chosen.generator->globe ? globe(o, size) : plane(o, size);
+  check_canvas(canvas);
+
+  const auto start = std::chrono::steady_clock::now();
+  const Dem dem = chosen.generator->generate(canvas, image, chosen.settings, run.part(0.1, 0.8));
+  const double seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+
+  WriteOptions write;
+  write.overwrite = shell.overwrite;
+  write.format = o.format;
+  if (holds_metadata(out, o.format))
+    write.metadata = {{"DEM_GENERATOR", o.name},
+                      {"DEM_SETTINGS", settings_text(chosen.settings)},
+                      {"DEM_VERSION", DEM_VERSION}};
+  write_dem(out, dem, {}, write, run.part(0.8, 1));
+
+  const auto [low, high] = std::ranges::minmax(dem.z.cells());
+  shell.say("{}: {} x {} cells of {:.4g} x {:.4g} m, heights {:.1f} to {:.1f} m, {:.3f} s: {}",
+            o.name, size.cols, size.rows, canvas.spacing.dx_m, canvas.spacing.dy_m, low, high,
+            seconds, out);
+  Json settings = Json::object();
+  for (const auto& [key, value] : chosen.settings) settings[key] = value;
+  shell.print({{"output", out},
+               {"generator", o.name},
+               {"settings", settings},
+               {"cols", size.cols},
+               {"rows", size.rows},
+               {"cell_m", {canvas.spacing.dx_m, canvas.spacing.dy_m}},
+               {"low_m", low},
+               {"high_m", high},
+               {"seconds", seconds}},
+              "");
+  return kDone;
+}
+
+std::string generator_names() {
+  std::vector<std::string> names;
+  for (const auto& g : generators()) names.push_back(g.name);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+}  // namespace
+
+void add_generate(CLI::App& app, Shell& shell) {
+  const auto o = std::make_shared<Options>();
+  auto* verb = add_verb(
+      app, shell, "generate", "Terrain from nothing, or from an image",
+      "  dem generate noise hills.tif\n"
+      "  dem generate noise:foothills range.tif --size 2049 --cell 10 --seed 7\n"
+      "  dem generate noise part.tif --size 512 --crs EPSG:32619 --origin 305000,4910000 -s H=0.9\n"
+      "Generators: " +
+          generator_names() + " (their settings: dem methods NAME)",
+      [o, &shell] { return generate(*o, shell); });
+  verb->add_option("NAME", o->name, "what to make, NAME or NAME:PRESET")->required()->type_name("");
+  verb->add_option("FILES", o->files,
+                   "[IMAGE] OUT: the DEM to write, and before it the image that\n"
+                   "some generators start from")
+      ->required()
+      ->type_name("");
+  verb->add_option("--size", o->size, "columns and rows; else 1025, or the image's")
+      ->type_name("N|WxH");
+  verb->add_option("--cell", o->cell, "size of a cell in metres; else 30")->type_name("M|DXxDY");
+  verb->add_option("--crs", o->crs, "coordinate system, e.g. EPSG:32619")->type_name("NAME");
+  verb->add_option("--origin", o->origin,
+                   "the north-west cell's centre in the CRS's units; else 0,0")
+      ->type_name("X,Y");
+  verb->add_option("--seed", o->seed, "another seed, another terrain; the same on every machine")
+      ->check([](const std::string& text) {
+        return text.starts_with('-') ? text + "; must be a whole number from 0 up" : std::string();
+      })
+      ->type_name("N");
+  verb->add_option("-s,--set", o->set, "a setting of the generator; may be repeated")
+      ->allow_extra_args(false)
+      ->type_name("KEY=VALUE");
+  verb->add_option("--format", o->format, "GDAL driver name, HGT or image; else by extension")
+      ->type_name("NAME");
+}
+
+}  // namespace dem::app
