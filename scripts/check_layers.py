@@ -16,11 +16,12 @@ LAYERS = {
     "algorithms": ["baseline", "draw", "evaluate", "holes", "mcmd", "noise", "outliers", "sample", "spline"],
     "methods": ["generators", "methods"],
     "io": ["baselines", "cells", "crs", "gdal_raster", "gdal_support", "geodesy", "heightmap", "hgt", "image", "io",
-           "nodata", "oiio_support", "staged_file"],
+           "nodata", "oiio_support", "polygons", "staged_file"],
 }
 
 # An algorithm that is written in several private files. They belong to it alone.
 PARTS = {
+    "holes": ["hole_filter", "hole_scan", "hole_windows"],
     "mcmd": ["lattice", "midpoint", "pyramid", "row_kernels", "waves"],
     "spline": ["grid", "multigrid", "overshoot", "spline_parameters", "spline_sample", "spline_solver", "springs", "tensor"],
 }

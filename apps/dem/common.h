@@ -31,6 +31,7 @@ class Shell {
   bool json = false, quiet = false, overwrite = false;
   int threads = 0;
   std::string progress = "auto";
+  std::string command;        ///< the command line as it was given
   std::function<int()> verb;  ///< what the command line chose
 
   /// Adds the shared options to a verb.

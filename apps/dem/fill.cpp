@@ -2,13 +2,10 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <chrono>
-#include <cmath>
-#include <cstring>
 #include <optional>
 
 #include "dem/baselines.h"
-#include "dem/holes.h"
+#include "hole_fill.h"
 #include "verbs.h"
 
 namespace dem::app {
@@ -25,19 +22,11 @@ struct Options {
   std::optional<std::uint64_t> seed;
   std::string method{default_fill_method()};
   std::vector<std::string> set;
-  bool inner_only = false;
+  std::string origin, table;
+  bool whole = false;
+  HoleChoice choice;
   ReadOptions read;
   WriteOptions write;
-};
-
-/// What was done, for the report.
-struct Outcome {
-  std::size_t unknown = 0, filled = 0, left_at_border = 0, left = 0;
-  VoidSummary voids;
-  bool known_kept = true;  // every known cell came back bit for bit
-  double seconds = 0;
-  std::vector<Figure> figures;
-  Raster<float> sigma;
 };
 
 /// A DEM of one known cell: cheap to fill, so that bad settings show before long work.
@@ -69,39 +58,6 @@ ChosenMethod choose(const Options& o) {
   return chosen;
 }
 
-/// Fills the unknown cells of `dem` in place.
-Outcome fill_in_place(Dem& dem, const ChosenMethod& chosen, bool inner_only, const Run& run) {
-  Outcome out;
-  out.voids = void_summary(dem.known);
-  out.unknown = out.voids.cells;
-  if (out.unknown == 0) return out;
-
-  const auto start = std::chrono::steady_clock::now();
-  Filled filled = chosen.method->fill(dem, chosen.settings, run);
-  out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-
-  const Mask inner = inner_only ? inner_voids(dem.known) : Mask();
-  const auto z = dem.z.cells();
-  const auto known = dem.known.cells();
-  for (std::size_t i = 0; i < z.size(); ++i) {
-    const float value = filled.z.cells()[i];
-    if (known[i]) {
-      out.known_kept &= std::memcmp(&z[i], &value, sizeof value) == 0;
-    } else if (inner_only && !inner.cells()[i]) {
-      ++out.left_at_border;
-    } else if (!std::isfinite(value)) {
-      ++out.left;
-    } else {
-      z[i] = value;
-      known[i] = 1;
-      ++out.filled;
-    }
-  }
-  out.figures = std::move(filled.report);
-  out.sigma = std::move(filled.sigma);
-  return out;
-}
-
 std::string settings_text(const Settings& settings) {
   std::string text;
   for (const auto& [key, value] : settings) text += (text.empty() ? "" : " ") + key + "=" + value;
@@ -109,27 +65,30 @@ std::string settings_text(const Settings& settings) {
 }
 
 /// What became of the known cells: in another type they need not be the same.
-std::string known_cells(const Options& o, const Outcome& out, CellType type) {
+std::string known_cells(const Options& o, const FillOutcome& out, CellType type) {
   if (!out.known_kept) return "CHANGED";
-  if (!o.write.type || *o.write.type == type) return "unchanged";
+  const std::string sum = fmt::format(" (checksum {:016x})", out.known_checksum);
+  if (!o.write.type || *o.write.type == type) return "unchanged" + sum;
   return "written as " +
          std::ranges::find(kTypes, *o.write.type, &decltype(kTypes)::value_type::second)->first;
 }
 
-void report(const Options& o, const ChosenMethod& chosen, const Outcome& out, CellType type,
+void report(const Options& o, const ChosenMethod& chosen, const FillOutcome& out, CellType type,
             Shell& shell) {
   if (out.unknown == 0) {
     shell.say("all cells are known: {} is a copy of {}", o.out, o.in);
   } else {
-    std::string left;
-    if (o.inner_only)
-      left += fmt::format(", {} left in voids at the border", grouped(out.left_at_border));
+    std::vector<Verdict> verdicts;
+    for (const auto& hole : out.outcomes) verdicts.push_back(hole.verdict);
+    std::string left = left_text(out.holes, verdicts);
     if (out.left) left += fmt::format(", {} left unfilled", grouped(out.left));
+    if (out.water_cells) left += fmt::format(", {} flat as water", grouped(out.water_cells));
     shell.say(
-        "filled {} of {} unknown cells ({} of {} voids touch the border){}; {}, {:.3f} s; known "
-        "cells {}: {}",
-        grouped(out.filled), grouped(out.unknown), grouped(out.voids.border_voids),
-        grouped(out.voids.voids), left, o.method, out.seconds, known_cells(o, out, type), o.out);
+        "filled {} of {} unknown cells ({} of {} voids touch the border: {} cells){}; {}, {} "
+        "window{}, {:.3f} s; known cells {}: {}",
+        grouped(out.filled), grouped(out.unknown), grouped(out.border_holes),
+        grouped(out.holes.size()), grouped(out.border_cells), left, o.method, grouped(out.windows),
+        out.windows == 1 ? "" : "s", out.seconds, known_cells(o, out, type), o.out);
   }
   Json figures = Json::array();
   for (const auto& f : out.figures)
@@ -140,46 +99,87 @@ void report(const Options& o, const ChosenMethod& chosen, const Outcome& out, Ce
                {"method", o.method},
                {"settings", settings},
                {"unknown", out.unknown},
-               {"voids", out.voids.voids},
-               {"border_voids", out.voids.border_voids},
-               {"border_void_cells", out.voids.border_cells},
+               {"voids", out.holes.size()},
+               {"border_voids", out.border_holes},
+               {"border_void_cells", out.border_cells},
+               {"windows", out.windows},
                {"filled", out.filled},
+               {"water", out.water_cells},
                {"left_at_border", out.left_at_border},
+               {"left_by_choice", out.left_by_choice},
                {"left", out.left},
                {"known_unchanged", out.known_kept},
+               {"known_checksum", fmt::format("{:016x}", out.known_checksum)},
                {"seconds", out.seconds},
                {"report", figures}},
               "");
 }
 
+const std::vector<CellClass> kOrigins{{0, "measured", {160, 160, 160}},
+                                      {1, "filled by method", {230, 120, 30}},
+                                      {2, "filled over an auxiliary DEM", {90, 160, 60}},
+                                      {3, "water, flat", {50, 110, 200}},
+                                      {4, "left void", {0, 0, 0}}};
+
+void write_origin(const Options& o, const DemFile& file, const FillOutcome& out, bool overwrite,
+                  const Run& run) {
+  Dem kinds{Raster<float>(file.dem.size()), Mask(file.dem.size(), 1), file.dem.ref,
+            file.dem.spacing};
+  std::ranges::copy(out.origin.cells(), kinds.z.cells().begin());
+  Source described;
+  described.type = CellType::uint8;
+  described.node_registered = file.source.node_registered;
+  described.band_description = "where each height comes from";
+  WriteOptions options;
+  options.overwrite = overwrite;
+  options.classes = kOrigins;
+  write_dem(o.origin, kinds, described, options, run);
+}
+
+void write_sigma(const Options& o, const DemFile& file, const FillOutcome& out, bool overwrite,
+                 const Run& run) {
+  Dem sigma = file.dem;
+  sigma.z = out.sigma;
+  Source described;
+  described.node_registered = file.source.node_registered;
+  described.band_description = "standard deviation of the elevation in metres";
+  WriteOptions options;
+  options.overwrite = overwrite;
+  write_dem(o.sigma, sigma, described, options, run);
+}
+
 int fill(const Options& o, Shell& shell) {
   const ChosenMethod chosen = choose(o);
-  check_writable(o.out, shell.overwrite);
-  if (!o.sigma.empty()) check_writable(o.sigma, shell.overwrite);
+  check(o.choice);
+  for (const std::string& path : {o.out, o.sigma, o.origin, o.table})
+    if (!path.empty()) check_writable(path, shell.overwrite);
 
   const Run run = shell.run();
   DemFile file = read_dem(o.in, o.read, run.part(0, 0.2));
   if (count(file.dem.known) == 0)
     throw IoError(o.in, "no known cell; at least one is needed to fill the others");
-  const Outcome out = fill_in_place(file.dem, chosen, o.inner_only, run.part(0.2, 0.8));
+  const FillRequest request{chosen,           o.choice,         o.whole,
+                            !o.table.empty(), !o.sigma.empty(), !o.origin.empty()};
+  const FillOutcome out = fill_holes_of(file.dem, request, run.part(0.2, 0.8));
 
   WriteOptions write = o.write;
   write.overwrite = shell.overwrite;
   if (out.unknown > 0 && holds_metadata(o.out, o.write.format))
-    write.metadata = {{"DEM_METHOD", o.method},
+    write.metadata = {{"DEM_INPUT", o.in},
+                      {"DEM_COMMAND", shell.command},
+                      {"DEM_METHOD", o.method},
                       {"DEM_SETTINGS", settings_text(chosen.settings)},
+                      {"DEM_KNOWN_CHECKSUM", fmt::format("{:016x}", out.known_checksum)},
                       {"DEM_VERSION", DEM_VERSION}};
-  if (!o.sigma.empty()) {
-    Dem sigma = file.dem;
-    sigma.z = out.sigma.empty() ? Raster<float>(file.dem.size()) : out.sigma;
-    WriteOptions plain;
-    plain.overwrite = shell.overwrite;
-    Source described;
-    described.node_registered = file.source.node_registered;
-    described.band_description = "standard deviation of the elevation in metres";
-    write_dem(o.sigma, sigma, described, plain, run.part(0.8, 0.85));
-  }
-  write_dem(o.out, file.dem, file.source, write, run.part(0.85, 1));
+  if (!o.sigma.empty()) write_sigma(o, file, out, shell.overwrite, run.part(0.8, 0.85));
+  if (!o.origin.empty()) write_origin(o, file, out, shell.overwrite, run.part(0.85, 0.87));
+  if (!o.table.empty())
+    write_text(o.table,
+               Json{{"input", o.in}, {"output", o.out}, {"holes", hole_table(out, o.method)}}.dump(
+                   2, ' ', false, Json::error_handler_t::replace) +
+                   "\n",
+               shell.overwrite);
+  write_dem(o.out, file.dem, file.source, write, run.part(0.87, 1));
 
   report(o, chosen, out, file.source.type, shell);
   if (!out.known_kept) return kCheckFailed;
@@ -244,7 +244,6 @@ void add_fill(CLI::App& app, Shell& shell) {
   verb->add_option("-s,--set", o->set, "a setting of the method; may be repeated")
       ->allow_extra_args(false)
       ->type_name("KEY=VALUE");
-  verb->add_flag("--inner-only", o->inner_only, "leave voids that touch the border unfilled");
   verb->add_option("--sigma", o->sigma, "also write the standard deviation of each cell, in metres")
       ->type_name("FILE");
   verb->add_option("--realisation", o->realisation,
@@ -252,6 +251,16 @@ void add_fill(CLI::App& app, Shell& shell) {
       ->check(CLI::Range(1, 1000000).description(""))
       ->type_name("K");
   verb->add_option("--seed", o->seed, "of random numbers")->type_name("N");
+  verb->add_option(
+          "--source", o->origin,
+          "also write where each cell comes from: 0 measured, 1 method, 2 aux, 3 water, 4 left")
+      ->type_name("FILE");
+  verb->add_option("--report-holes", o->table,
+                   "also write a JSON table of the holes, with the error of hidden rim cells")
+      ->type_name("FILE");
+  verb->add_flag("--whole", o->whole,
+                 "fill the raster as one problem; else so only when a quarter of it is unknown");
+  o->choice.add_options(*verb);
   add_read_options(*verb, o->read);
   add_write_options(*verb, o->write);
 }

@@ -6,6 +6,7 @@
 
 #include "dem/geodesy.h"
 #include "dem/holes.h"
+#include "dem/polygons.h"
 #include "verbs.h"
 
 namespace dem::app {
@@ -13,6 +14,7 @@ namespace {
 
 struct Options {
   std::vector<std::string> files;
+  std::string holes;
   ReadOptions read;
 };
 
@@ -124,6 +126,12 @@ std::string as_text(const Facts& f) {
 }
 
 int info(const Options& options, Shell& shell) {
+  if (!options.holes.empty()) {
+    if (options.files.size() > 1)
+      throw std::invalid_argument("--holes takes the voids of one FILE; there are " +
+                                  std::to_string(options.files.size()));
+    check_writable(options.holes, shell.overwrite);
+  }
   const Run run = shell.run();
   Json files = Json::array();
   std::string text;
@@ -132,6 +140,9 @@ int info(const Options& options, Shell& shell) {
     const DemFile file =
         read_dem(options.files[i], options.read, run.part(double(i) / n, double(i + 1) / n));
     const Facts facts = gather(file);
+    if (!options.holes.empty())
+      write_holes(options.holes, find_holes(file.dem, facts.rows), file.dem.known, file.dem.ref,
+                  shell.overwrite);
     files.push_back(as_json(facts));
     text += (i > 0 ? "\n" : "") + as_text(facts);
   }
@@ -147,12 +158,15 @@ void add_info(CLI::App& app, Shell& shell) {
       add_verb(app, shell, "info", "What a file holds: size, cells, no-data, voids, heights",
                "  dem info N36E008.hgt\n"
                "  dem info a.tif b.tif --json\n"
-               "  dem info odd-name.hgt --tile N36E008\n"
+               "  dem info N36E008.hgt --holes voids.gpkg   # the voids as polygons, with sizes\n"
                "  dem info sea.tif --nodata 0          # how many voids, if 0 meant unknown",
                [options, &shell] { return info(*options, shell); });
   verb->add_option("FILE", options->files, "elevation files, anything GDAL opens")
       ->required()
       ->type_name("");
+  verb->add_option("--holes", options->holes,
+                   "also write the voids as polygons with area, distance to data, rim relief ...")
+      ->type_name("FILE.gpkg");
   add_read_options(*verb, options->read);
 }
 

@@ -136,6 +136,7 @@ int run(int argc, char** argv) {
   app.get_formatter()->column_width(31);
   app.require_subcommand(1);
   Shell shell;
+  shell.command = fmt::format("dem {}", fmt::join(argv + 1, argv + argc, " "));
   add_info(app, shell);
   add_sample(app, shell);
   add_fill(app, shell);

@@ -1,6 +1,7 @@
 #pragma once
 // Elevation files: in and out. The only place where sentinels for "no data" exist.
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <stdexcept>
@@ -76,6 +77,13 @@ struct DemFile {
 /// Throws:  IoError, Cancelled.
 DemFile read_dem(const std::string& path, const ReadOptions& options = {}, const Run& run = {});
 
+/// A value of a raster of kinds, for legends: 1 = "filled by method", in a colour.
+struct CellClass {
+  int value = 0;
+  std::string name{};
+  std::array<std::uint8_t, 3> rgb{};
+};
+
 struct WriteOptions {
   std::string format{};            ///< GDAL driver name, "HGT" or "image"; "": from the extension
   std::optional<CellType> type{};  ///< default: that of the source
@@ -87,6 +95,8 @@ struct WriteOptions {
   std::optional<HeightRange> heights{};
   std::optional<double> unknown_grey{};  ///< for images; default: alpha 0 marks unknown cells
   std::vector<std::pair<std::string, std::string>> metadata{};  ///< added to the source's
+  /// The cells are kinds, not heights: a colour table, and CLASS_1=NAME in the metadata.
+  std::vector<CellClass> classes{};
 };
 
 /// Writes a DEM so that the path holds either what it held before or the whole new file: it is

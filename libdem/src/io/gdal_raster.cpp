@@ -429,7 +429,19 @@ void set_metadata(GDALDatasetH dataset, const Source& source, const WriteOptions
   for (const auto* list : {&source.metadata, &options.metadata})
     for (const auto& [key, value] : *list)
       GDALSetMetadataItem(dataset, key.c_str(), value.c_str(), nullptr);
+  for (const CellClass& c : options.classes)
+    GDALSetMetadataItem(dataset, fmt::format("CLASS_{}", c.value).c_str(), c.name.c_str(), nullptr);
   GDALSetMetadataItem(dataset, "AREA_OR_POINT", source.node_registered ? "Point" : "Area", nullptr);
+}
+
+void set_colours(GDALRasterBandH band, const std::vector<CellClass>& classes) {
+  const GDALColorTableH table = GDALCreateColorTable(GPI_RGB);
+  for (const CellClass& c : classes) {
+    const GDALColorEntry entry{c.rgb[0], c.rgb[1], c.rgb[2], 255};
+    GDALSetColorEntry(table, c.value, &entry);
+  }
+  GDALSetRasterColorTable(band, table);
+  GDALDestroyColorTable(table);
 }
 
 void set_georeference(GDALDatasetH dataset, const GeoRef& ref) {
@@ -491,7 +503,10 @@ void write_typed(const std::string& path, const std::string& format, CellType ty
   if (cells.nodata) GDALSetRasterNoDataValue(band, double(*cells.nodata));
   if (type == CellType::int8)
     GDALSetMetadataItem(band, "PIXELTYPE", "SIGNEDBYTE", "IMAGE_STRUCTURE");
-  GDALSetRasterUnitType(band, "m");
+  if (options.classes.empty())
+    GDALSetRasterUnitType(band, "m");
+  else
+    set_colours(band, options.classes);
   if (!source.band_description.empty()) GDALSetDescription(band, source.band_description.c_str());
 
   GdalProgress progress(run, "writing");

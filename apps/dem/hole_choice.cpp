@@ -1,0 +1,102 @@
+#include "hole_choice.h"
+
+#include <CLI/CLI.hpp>
+#include <array>
+
+namespace dem::app {
+namespace {
+
+constexpr std::size_t verdicts = 7;
+
+std::string names_of_facts() {
+  std::string names;
+  for (const HoleFact& fact : hole_facts()) names += (names.empty() ? "" : ", ") + fact.name;
+  return names;
+}
+
+CLI::Validator above_zero() {
+  return CLI::Validator(
+      [](const std::string& text) {
+        double value = 0;
+        return CLI::detail::lexical_cast(text, value) && value > 0
+                   ? std::string()
+                   : text + "; must be a number above 0";
+      },
+      "");
+}
+
+}  // namespace
+
+void HoleChoice::add_options(CLI::App& app) {
+  const char* group = "Which holes (all by default)";
+  app.add_flag("--inner-only", inner_only, "not those that touch the border of the raster")
+      ->group(group);
+  app.add_option("--max-area-km2", max_area_km2, "only those up to this area on the ground")
+      ->check(above_zero())
+      ->type_name("A")
+      ->group(group);
+  app.add_option("--max-distance-m", max_distance_m,
+                 "only those with no cell further from data than this")
+      ->check(above_zero())
+      ->type_name("D")
+      ->group(group);
+  app.add_option("--min-cells", min_cells, "only those of at least so many cells")
+      ->type_name("N")
+      ->group(group);
+  app.add_option(
+         "--where", where,
+         "only those that meet a condition, \"area_km2 < 5 and rim_relief_m < 200\"; names: " +
+             names_of_facts())
+      ->type_name("CONDITION")
+      ->group(group);
+  app.add_option("--region", region, "only those with a cell in these polygons, anything OGR opens")
+      ->type_name("FILE")
+      ->group(group);
+}
+
+bool HoleChoice::any() const {
+  return inner_only || max_area_km2 || max_distance_m || min_cells || !where.empty() ||
+         !region.empty();
+}
+
+std::string_view text_of(Verdict verdict) {
+  constexpr std::array<std::string_view, verdicts> texts{
+      "fill",    "--inner-only", "--max-area-km2", "--min-cells", "--max-distance-m",
+      "--where", "--region"};
+  return texts[std::size_t(verdict)];
+}
+
+void check(const HoleChoice& choice) {
+  if (!choice.where.empty()) parse_hole_filter(choice.where);
+}
+
+std::vector<Verdict> judge(const HoleChoice& choice, const std::vector<Hole>& holes) {
+  std::function<bool(const Hole&)> where;
+  if (!choice.where.empty()) where = parse_hole_filter(choice.where);
+  std::vector<Verdict> out;
+  for (const Hole& hole : holes)
+    out.push_back(
+        choice.inner_only && hole.at_border                                 ? Verdict::at_border
+        : choice.max_area_km2 && hole.area_m2 > 1e6 * *choice.max_area_km2  ? Verdict::too_large
+        : choice.min_cells && hole.cells < *choice.min_cells                ? Verdict::too_small
+        : choice.max_distance_m && hole.distance_m > *choice.max_distance_m ? Verdict::too_deep
+        : where && !where(hole)                                             ? Verdict::where
+        : !choice.region.empty() && hole.marked_cells == 0                  ? Verdict::region
+                                                                            : Verdict::fill);
+  return out;
+}
+
+std::string left_text(const std::vector<Hole>& holes, const std::vector<Verdict>& verdict) {
+  std::string text;
+  for (std::size_t v = 1; v < verdicts; ++v) {
+    std::size_t n = 0, cells = 0;
+    for (std::size_t h = 0; h < holes.size(); ++h)
+      if (verdict[h] == Verdict(v)) ++n, cells += holes[h].cells;
+    if (n > 0)
+      text += fmt::format(", {} left in {} voids by {}", grouped(cells), grouped(n),
+                          text_of(Verdict(v)));
+  }
+  return text;
+}
+
+}  // namespace dem::app

@@ -1,0 +1,182 @@
+#include "hole_fill.h"
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <cmath>
+
+#include "dem/geodesy.h"
+#include "dem/polygons.h"
+
+namespace dem::app {
+namespace {
+
+/// Above this share of unknown cells the raster is one problem: its known cells are samples, not
+/// surroundings of holes.
+constexpr double whole_share = 0.25;
+
+/// The spline chooses its lengths from windows of at least so many cells; smaller ones hold too
+/// little ground beside the hole to choose from, and the choice would cost more than the fill.
+constexpr std::size_t cells_to_choose_from = 1 << 18;
+
+LatticeOrigin lattice_origin(const GeoRef& ref) {
+  const auto& at = ref.to_world;
+  const auto index = [](double position, double step) {
+    const double cells = step != 0 ? position / step : 0;
+    return std::abs(cells) < 1e15 ? std::int64_t(std::floor(cells + 0.5)) : 0;
+  };
+  return {index(at[0], at[1]), index(at[3], at[5])};
+}
+
+bool has_setting(const ChosenMethod& chosen, std::string_view name) {
+  return std::ranges::find(chosen.settings, name, &Settings::value_type::first) !=
+         chosen.settings.end();
+}
+
+}  // namespace
+
+FillPlan plan_fill(const FillRequest& request, const std::vector<Hole>& holes, Size raster,
+                   const GeoRef& ref, FillOutcome& outcome) {
+  FillPlan plan;
+  plan.verdicts = judge(request.choice, holes);
+  std::vector<std::uint8_t> chosen;
+  std::size_t cells = 0;
+  for (std::size_t h = 0; h < holes.size(); ++h) {
+    const Hole& hole = holes[h];
+    const Verdict verdict = plan.verdicts[h];
+    outcome.unknown += hole.cells;
+    outcome.border_holes += hole.at_border;
+    if (hole.at_border) outcome.border_cells += hole.cells;
+    if (verdict == Verdict::at_border) outcome.left_at_border += hole.cells;
+    if (verdict != Verdict::at_border && verdict != Verdict::fill)
+      outcome.left_by_choice += hole.cells;
+    chosen.push_back(verdict == Verdict::fill);
+    if (chosen.back()) cells += hole.cells;
+    outcome.outcomes.push_back({verdict, 0, 0, 0, 0, -1, NAN, NAN, 0, 0});
+  }
+  plan.whole = request.whole || double(cells) > whole_share * double(raster.cells());
+  if (plan.whole && cells > 0) {
+    plan.windows = {{{0, 0, raster.cols, raster.rows}, {}}};
+    for (std::uint32_t h = 0; h < holes.size(); ++h)
+      if (chosen[h]) plan.windows[0].holes.push_back(h);
+  } else {
+    plan.windows = plan_windows(holes, chosen, raster, lattice_origin(ref));
+  }
+  outcome.windows = plan.windows.size();
+  return plan;
+}
+
+std::function<Filled(const Dem&, const Run&)> window_fill(const FillRequest& request, bool whole) {
+  const ChosenMethod& chosen = request.method;
+  ChosenMethod usual = chosen;
+  if (chosen.method->name == "spline" && !has_setting(chosen, "parameters"))
+    usual.settings.insert(usual.settings.end(), {{"parameters", "manual"}, {"L3", "4"}});
+  return [chosen, usual, whole](const Dem& dem, const Run& run) {
+    const bool choose = whole || dem.size().cells() >= cells_to_choose_from;
+    const ChosenMethod& now = choose ? chosen : usual;
+    return now.method->fill(dem, now.settings, run);
+  };
+}
+
+void account(const HolePatch& patch, const FillPlan& plan, FillOutcome& outcome) {
+  std::size_t run = 0, cell = 0;
+  for (std::size_t i = 0; i < patch.holes.size(); ++i) {
+    HoleOutcome& hole = outcome.outcomes[patch.holes[i]];
+    hole.guide = patch.guide[i];
+    hole.rim_error_m = patch.rim_error_m[i];
+    hole.offset_m = patch.offset_m[i];
+    hole.seconds = patch.seconds;
+    hole.window_cells = plan.windows[patch.window].box.cells();
+    for (; run < patch.first_run[i + 1]; ++run)
+      for (int n = patch.runs[run].end - patch.runs[run].begin; n > 0; --n) {
+        const CellOrigin origin = patch.origin[cell++];
+        (origin == CellOrigin::left    ? hole.left_cells
+         : origin == CellOrigin::water ? hole.water_cells
+         : origin == CellOrigin::guide ? hole.guide_cells
+                                       : hole.method_cells) += 1;
+      }
+    outcome.left += hole.left_cells;
+    outcome.filled += hole.method_cells + hole.guide_cells + hole.water_cells;
+    outcome.water_cells += hole.water_cells;
+    outcome.guide_cells += hole.guide_cells;
+  }
+  if (plan.windows.size() == 1) outcome.figures = patch.report;
+}
+
+FillOutcome fill_holes_of(Dem& dem, const FillRequest& request, const Run& run) {
+  FillOutcome out;
+  const Size size = dem.size();
+  const auto spacing = spacing_by_row(dem.ref, size);
+  Mask region;
+  if (!request.choice.region.empty())
+    region = Polygons(request.choice.region, dem.ref).cells_in({0, 0, size.cols, size.rows});
+  out.holes = find_holes(dem, spacing, region);
+  out.known_checksum = known_checksum(dem);
+  const FillPlan plan = plan_fill(request, out.holes, size, dem.ref, out);
+  if (request.keep_sigma) out.sigma = Raster<float>(size);
+  if (request.keep_origin) {
+    out.origin = Raster<std::uint8_t>(size);
+    for (std::size_t i = 0; i < size.cells(); ++i)
+      out.origin.cells()[i] =
+          std::uint8_t(dem.known.cells()[i] ? CellOrigin::measured : CellOrigin::left);
+  }
+
+  HoleWork work;
+  work.flat_water = !plan.whole;
+  work.rim_errors = request.rim_errors;
+  work.fill = window_fill(request, plan.whole);
+  work.read = [&](const Box& box) {
+    return WindowData{crop(dem, box, spacing[std::size_t(box.row + box.rows / 2)]), {}, {}};
+  };
+  // Heights go straight to their place; while others still look at the mask, it stays as it is.
+  std::vector<CellRun> filled;
+  work.take = [&](HolePatch&& patch) {
+    account(patch, plan, out);
+    std::size_t cell = 0;
+    for (const CellRun& cells : patch.runs)
+      for (int col = cells.begin; col < cells.end; ++col, ++cell) {
+        if (request.keep_origin) out.origin(col, cells.row) = std::uint8_t(patch.origin[cell]);
+        if (patch.origin[cell] == CellOrigin::left) continue;
+        dem.z(col, cells.row) = patch.z[cell];
+        if (!patch.sigma.empty() && request.keep_sigma)
+          out.sigma(col, cells.row) = patch.sigma[cell];
+        if (!filled.empty() && filled.back().row == cells.row && filled.back().end == col)
+          ++filled.back().end;
+        else
+          filled.push_back({cells.row, col, col + 1});
+      }
+  };
+  const auto start = std::chrono::steady_clock::now();
+  fill_windows(out.holes, plan.windows, work, run);
+  out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  out.known_kept = known_checksum(dem) == out.known_checksum;
+  for (const CellRun& cells : filled)
+    std::fill_n(dem.known.row(cells.row).begin() + cells.begin, cells.end - cells.begin,
+                std::uint8_t{1});
+  return out;
+}
+
+Json hole_table(const FillOutcome& outcome, const std::string& method) {
+  const auto number = [](double v) { return std::isfinite(v) ? Json(v) : Json(); };
+  Json table = Json::array();
+  for (std::size_t h = 0; h < outcome.holes.size(); ++h) {
+    const Hole& hole = outcome.holes[h];
+    const HoleOutcome& o = outcome.outcomes[h];
+    Json row = {{"first_col", hole.first_col}, {"first_row", hole.box.row}};
+    for (const HoleFact& fact : hole_facts()) row[fact.name] = number(fact.value(hole));
+    if (o.verdict != Verdict::fill)
+      row["left_by"] = text_of(o.verdict);
+    else
+      row.update({{"method", method},
+                  {"filled", o.method_cells + o.guide_cells + o.water_cells},
+                  {"water", o.water_cells},
+                  {"left", o.left_cells},
+                  {"rim_error_m", number(o.rim_error_m)},
+                  {"window_cells", o.window_cells},
+                  {"window_seconds", o.seconds}});
+    table.push_back(std::move(row));
+  }
+  return table;
+}
+
+}  // namespace dem::app
