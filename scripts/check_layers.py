@@ -12,8 +12,9 @@ import tempfile
 # The layer of each file. A header dem/NAME.h and its source NAME.cpp share a name and a layer.
 LAYERS = {
     "values": ["canvas", "dem", "fields", "raster", "run"],
-    "helpers": ["gradient", "parallel", "random", "vectorised"],  # private headers that any algorithm may use
-    "algorithms": ["baseline", "draw", "evaluate", "holes", "mcmd", "noise", "outliers", "sample", "spline"],
+    "helpers": ["flood", "gradient", "parallel", "paths", "random", "vectorised"],  # private headers that any algorithm may use
+    "algorithms": ["baseline", "draw", "evaluate", "holes", "mcmd", "networks", "noise", "outliers", "sample",
+                   "spline"],
     "methods": ["generators", "methods"],
     "io": ["baselines", "cells", "crs", "gdal_raster", "gdal_support", "geodesy", "heightmap", "hgt", "image", "io",
            "nodata", "oiio_support", "polygons", "staged_file"],
@@ -23,11 +24,13 @@ LAYERS = {
 PARTS = {
     "holes": ["hole_filter", "hole_scan", "hole_windows"],
     "mcmd": ["lattice", "midpoint", "pyramid", "row_kernels", "waves"],
+    "networks": ["growth", "ridges", "rivers"],
     "spline": ["grid", "multigrid", "overshoot", "spline_parameters", "spline_sample", "spline_solver", "springs", "tensor"],
 }
 
-# The one algorithm that calls another: the spline's solver starts from MCMD's surface.
-CALLS = {("spline", "mcmd"), ("spline_parameters", "mcmd")}
+# The algorithms that call another: the spline's solver starts from MCMD's surface, and generators
+# end with it.
+CALLS = {("spline", "mcmd"), ("spline_parameters", "mcmd"), ("networks", "mcmd")}
 
 # The layers that each layer may include. Algorithms do not include each other: they compose
 # through data.

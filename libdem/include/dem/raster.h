@@ -48,6 +48,14 @@ struct Size {
   bool operator==(const Size&) const = default;
 };
 
+/// The place of a cell.
+struct Cell {
+  int col = 0;
+  int row = 0;
+
+  bool operator==(const Cell&) const = default;
+};
+
 /// A rectangle of values, row by row, row 0 in the north. It owns its cells.
 /// Cells are named (col, row). A Raster<float> returned by a reconstruction has no holes.
 template <class T>

@@ -21,11 +21,6 @@ namespace {
 /// Tells the draws of this file apart from other uses of the same seed.
 enum Stream : std::uint64_t { kRandom = 0x5a4d0001, kTies, kVoids, kTracks };
 
-struct Cell {
-  int col = 0;
-  int row = 0;
-};
-
 /// The cells of `dem` that `keep` marks; the others' heights are wiped, so that none can leak.
 Dem only(const Dem& dem, Mask keep, const char* what, double value) {
   Dem out{Raster<float>(dem.size()), std::move(keep), dem.ref, dem.spacing};

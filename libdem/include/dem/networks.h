@@ -1,0 +1,120 @@
+#pragma once
+// Ridges and rivers first, terrain after: skeletons of known cells, and the terrain around them.
+
+#include <cstdint>
+#include <vector>
+
+#include "dem/dem.h"
+#include "dem/fields.h"
+#include "dem/mcmd.h"
+#include "dem/run.h"
+
+namespace dem {
+
+/// A river, from its source to its mouth; each cell is a neighbour of the one before.
+struct River {
+  std::vector<Cell> path;  ///< the last cell is on the map's edge, or on the river it joins
+  int joins = -1;          ///< the number of that river; -1: it leaves the map
+  double mass = 1;         ///< how many sources feed it
+};
+
+/// A skeleton DEM: its known cells are those of ridges and rivers, and nothing else.
+struct Skeleton {
+  Dem dem;
+  Raster<CellKind> kinds;  ///< ridge, river; plain where nothing is known
+  std::vector<River> rivers;
+};
+
+/// Options of grow_skeleton. Lengths are parts of the map's longer side where they are no cells.
+struct NetworkOptions {
+  int ridges = 12;
+  int springs = 120;
+  double ridge_height_m = 1200;
+  double ridge_variation = 0.5;
+  double ridge_length = 0.12;
+  double ridge_width = 0.5;
+  double ridge_wander = 0.12;
+  double ridge_H = 0.9;
+  double dome = 0.08;
+  double friction = 40;
+  double river_depth_m = 4;
+  double river_width_m = 15;
+  std::uint64_t seed = 1;
+};
+std::vector<Field> fields(NetworkOptions& options);
+
+/// Grows ridges and the rivers that drain them, on an empty map.
+/// Method:   [belhadj2005] section 2. Couples of ridge particles walk apart on fractional Brownian
+///           paths, their altitude a Gaussian of the way gone, until it is next to nothing or they
+///           meet another ridge. Their Gaussian cross-sections, blended (the highest counts), are
+///           the ground that river particles run down with inertia and friction. One that meets the
+///           path of another stops; the other goes on from there with both velocities and masses.
+///           Rivers that end inside the map are dropped. Departures: the ground is held on 257
+///           nodes a side, stands on a dome, and its logarithm pulls the particles, its basins
+///           filled to their outlets; a path that crosses itself loses the loop; a river whose
+///           confluence is washed away flows on; an altitude along a river is the lowest so far,
+///           less the bed's depth, which grows with the root of the mass.
+/// Gives:    along every river elevations never rise toward the mouth. A larger map of the same
+///           shape shows the same ridges in more detail.
+/// Cost:     O(cells), most of it to clear the rasters.
+/// Throws:   std::invalid_argument, also when no river leaves the map; Cancelled.
+Skeleton grow_skeleton(Size size, Spacing spacing, const NetworkOptions& options = {},
+                       const Run& run = {});
+
+/// How heights are found on lines that a user drew.
+enum class LineHeights { generated, given };
+
+/// Options of read_skeleton.
+struct SketchLinesOptions {
+  LineHeights heights = LineHeights::generated;
+  double low_m = 0;
+  double high_m = 1200;
+  double river_slope = 0.01;
+  double ridge_slope = 0.25;
+};
+std::vector<Field> fields(SketchLinesOptions& options);
+
+/// Reads ridges and rivers off a drawing: white (from 0.98) is nothing, the lighter half of the
+/// greys [0.5, 0.98) are ridges, the darker half [0, 0.5) rivers.
+/// Heights:  given: the grey, from low_m (black) to high_m (white); a river cell that lies lower
+///           than the next one toward its mouth is raised to it. generated: rivers rise from their
+///           mouths by river_slope, ridges stand above the nearest river or edge of the map by
+///           ridge_slope times its distance, up to high_m.
+/// Mouths:   the river cells on the map's edge; of a river that does not reach it, the cell nearest
+///           to it.
+/// Gives:    along every river elevations never rise toward the mouth.
+/// Throws:   std::invalid_argument when the drawing has no line, or no white; Cancelled.
+Skeleton read_skeleton(const Raster<float>& drawing, Spacing spacing,
+                       const SketchLinesOptions& options = {}, const Run& run = {});
+
+/// What makes a terrain of a skeleton.
+enum class SkeletonFill { mcmd, mdi };
+
+/// Options of fill_skeleton.
+struct SkeletonFillOptions {
+  SkeletonFill fill = SkeletonFill::mcmd;
+  double I_bu = 5;
+  double I = 0;
+  double I_bu_ridge = 5;
+  double I_ridge = 0;
+  double I_bu_river = 0;
+  double I_river = 0;
+  double H = 0.35;
+  double rt = 0;
+  double rs = 0.06;
+  double rs_bu = 0.05;
+  std::uint64_t seed = 1;
+};
+std::vector<Field> fields(SkeletonFillOptions& options);
+
+/// Makes a terrain of a skeleton, whose cells stay as they are, bit for bit.
+/// Method:   `mcmd`, the default: [belhadj2007] figure 11, with I and I_bu of their own for ridges
+///           and rivers; `mdi`: [belhadj2005], MDI then MD. MCMD is the default because its bends
+///           make ridges sharp and valleys round; MDI's heights between lines are plain means.
+/// Needs:    at least one known cell.
+/// Cost:     as fill_mcmd, fill_mdi.
+/// Throws:   std::invalid_argument, Cancelled.
+Raster<float> fill_skeleton(const Skeleton& skeleton, const SkeletonFillOptions& options = {},
+                            const Run& run = {});
+
+}  // namespace dem
