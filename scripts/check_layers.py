@@ -13,7 +13,7 @@ import tempfile
 LAYERS = {
     "values": ["dem", "fields", "raster", "run"],
     "helpers": ["gradient", "parallel", "random"],  # private headers that any algorithm may use
-    "algorithms": ["baseline", "draw", "evaluate", "holes", "mcmd", "sample", "spline"],
+    "algorithms": ["baseline", "draw", "evaluate", "holes", "mcmd", "raytrace", "sample", "spline"],
     "methods": ["generators", "methods"],
     "io": ["baselines", "cells", "crs", "gdal_raster", "gdal_support", "geodesy", "heightmap", "hgt", "image", "io",
            "nodata", "oiio_support", "staged_file"],
@@ -22,6 +22,7 @@ LAYERS = {
 # An algorithm that is written in several private files. They belong to it alone.
 PARTS = {
     "mcmd": ["lattice", "midpoint", "pyramid", "row_kernels", "waves"],
+    "raytrace": ["heightfield"],
     "spline": ["grid", "multigrid", "overshoot", "spline_parameters", "spline_sample", "spline_solver", "springs", "tensor"],
 }
 
