@@ -13,8 +13,8 @@ import tempfile
 LAYERS = {
     "values": ["canvas", "dem", "fields", "raster", "run"],
     "helpers": ["flood", "gradient", "parallel", "paths", "random", "vectorised"],  # private headers that any algorithm may use
-    "algorithms": ["baseline", "draw", "evaluate", "holes", "mcmd", "networks", "noise", "outliers", "sample",
-                   "spline"],
+    "algorithms": ["baseline", "draw", "evaluate", "holes", "mcmd", "networks", "noise", "outliers", "raytrace",
+                   "sample", "spline"],
     "methods": ["generators", "methods"],
     "io": ["baselines", "cells", "crs", "gdal_raster", "gdal_support", "geodesy", "heightmap", "hgt", "image", "io",
            "nodata", "oiio_support", "polygons", "staged_file"],
@@ -25,6 +25,7 @@ PARTS = {
     "holes": ["hole_filter", "hole_scan", "hole_windows"],
     "mcmd": ["lattice", "midpoint", "pyramid", "row_kernels", "waves"],
     "networks": ["growth", "ridges", "rivers"],
+    "raytrace": ["heightfield"],
     "spline": ["grid", "multigrid", "overshoot", "spline_parameters", "spline_sample", "spline_solver", "springs", "tensor"],
 }
 

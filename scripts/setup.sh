@@ -12,7 +12,7 @@ packages=(
   ca-certificates
 )
 test_packages=(
-  libgtest-dev libgmock-dev libbenchmark-dev
+  libgtest-dev libgmock-dev libbenchmark-dev libembree-dev
   clang-14 clang-format-14 libclang-rt-14-dev
   python3
 )

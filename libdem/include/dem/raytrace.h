@@ -1,0 +1,92 @@
+#pragma once
+// Perspective views of terrain by grid tracing [musgrave1989].
+//
+// Coordinates are metres: x east, y north, z up. The centre of cell (0, 0) is x = y = 0, so that the
+// cell (col, row) stands at x = col * dx_m, y = -row * dy_m, z = its elevation.
+
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "dem/dem.h"
+
+namespace dem {
+
+struct Vec3 {
+  double x = 0, y = 0, z = 0;
+
+  bool operator==(const Vec3&) const = default;
+};
+
+constexpr Vec3 operator+(Vec3 a, Vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+constexpr Vec3 operator-(Vec3 a, Vec3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+constexpr Vec3 operator*(double s, Vec3 v) { return {s * v.x, s * v.y, s * v.z}; }
+constexpr double dot(Vec3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+
+/// The points origin + t * direction for 0 <= t <= t_max. The direction has any length but zero.
+struct Ray {
+  Vec3 origin;
+  Vec3 direction;
+  double t_max = std::numeric_limits<double>::infinity();
+};
+
+/// Where a ray first meets the ground.
+struct Hit {
+  double t = 0;
+  int col = 0, row = 0;  ///< the square between the cells (col, row) and (col + 1, row + 1)
+  Vec3 normal;           ///< of the triangle that was hit, upwards, of length 1
+};
+
+/// A surface of two triangles between each four neighbouring cells, split from north west to south
+/// east, and the tree that rays find it with. A triangle with an unknown corner is a hole that rays
+/// pass; a square with one unknown corner keeps the triangle of the other three.
+///
+/// Method: grid tracing [musgrave1989] section 5: a DDA through squares, over a tree of 4 x 4 grids
+///         that hold the lowest and the highest ground below them. Departures: no stack, the walk
+///         goes up a level when it leaves a grid; a hit is a change of sign of the ray's height above
+///         ground along the walk, so that no ray slips through between two triangles; both sides of
+///         the ground stop a ray.
+/// Needs:  at least 2 x 2 cells. The dem may go once the surface is made.
+/// Gives:  heights multiplied by `exaggeration`; every z here is one of these.
+/// Cost:   5 bytes a cell; a ray visits O(log cells) grids where the ground is far below it, and
+///         never more than O(sqrt(cells)) squares.
+/// Throws: std::invalid_argument for fewer cells, a spacing or an exaggeration that is not > 0, or a
+///         known height that is not finite.
+class Heightfield {
+ public:
+  explicit Heightfield(const Dem& dem, double exaggeration = 1);
+
+  /// The first point of the ray on the ground; touching counts.
+  std::optional<Hit> intersect(const Ray& ray) const;
+
+  /// Whether the ground stands in the way: intersect() without the point.
+  bool blocks(const Ray& ray) const;
+
+  /// The height of the ground below or above (x, y); none in a hole or beside the terrain.
+  std::optional<double> height(double x, double y) const;
+
+  Size size() const { return z_.size(); }
+  Spacing spacing() const { return spacing_; }
+
+  /// The lowest and the highest ground of the triangles there are; low > high when there are none.
+  double low() const { return low_; }
+  double high() const { return high_; }
+
+ private:
+  struct Bounds {
+    float low = std::numeric_limits<float>::infinity(), high = -low;
+  };
+  struct Walk;
+
+  void build_tree();
+  bool trace(const Ray& ray, Walk& walk) const;
+
+  Raster<float> z_;  // NaN where unknown
+  Spacing spacing_;
+  std::vector<Raster<Bounds>>
+      tree_;  // [0]: grids of 4 x 4 squares, [1]: grids of 4 x 4 of those ...
+  bool has_holes_ = false;
+  double low_ = 0, high_ = 0;
+};
+
+}  // namespace dem
