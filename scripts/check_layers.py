@@ -13,10 +13,11 @@ import tempfile
 LAYERS = {
     "values": ["dem", "fields", "raster", "run"],
     "helpers": ["gradient", "parallel", "random"],  # private headers that any algorithm may use
-    "algorithms": ["baseline", "draw", "evaluate", "holes", "mcmd", "sample", "spline"],
-    "methods": ["generators", "methods"],
+    "algorithms": ["baseline", "draw", "evaluate", "holes", "mcmd", "points", "sample", "spline"],
+    "methods": ["generators", "gridding", "methods"],
     "io": ["baselines", "cells", "crs", "gdal_raster", "gdal_support", "geodesy", "heightmap", "hgt", "image", "io",
-           "nodata", "oiio_support", "staged_file"],
+           "las", "lattices", "nodata", "ogr_layers", "oiio_support", "point_files", "point_reading", "point_text",
+           "point_vectors", "staged_file"],
 }
 
 # An algorithm that is written in several private files. They belong to it alone.
