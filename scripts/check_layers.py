@@ -12,12 +12,13 @@ import tempfile
 # The layer of each file. A header dem/NAME.h and its source NAME.cpp share a name and a layer.
 LAYERS = {
     "values": ["canvas", "dem", "fields", "raster", "run"],
-    "helpers": ["flood", "gradient", "parallel", "paths", "random", "vectorised"],  # private headers that any algorithm may use
-    "algorithms": ["baseline", "draw", "evaluate", "holes", "mcmd", "networks", "noise", "outliers", "raytrace",
-                   "sample", "spline"],
-    "methods": ["generators", "methods"],
+    "helpers": ["flood", "gradient", "parallel", "paths", "random", "vectorised"],  # private: for any algorithm
+    "algorithms": ["baseline", "draw", "evaluate", "holes", "mcmd", "networks", "noise", "outliers", "points",
+                   "raytrace", "sample", "spline"],
+    "methods": ["generators", "gridding", "methods"],
     "io": ["baselines", "cells", "crs", "gdal_raster", "gdal_support", "geodesy", "heightmap", "hgt", "image", "io",
-           "nodata", "oiio_support", "polygons", "staged_file"],
+           "las", "lattices", "nodata", "ogr_layers", "oiio_support", "point_files", "point_reading", "point_text",
+           "point_vectors", "polygons", "staged_file"],
 }
 
 # An algorithm that is written in several private files. They belong to it alone.

@@ -140,6 +140,7 @@ int run(int argc, char** argv) {
   add_info(app, shell);
   add_sample(app, shell);
   add_fill(app, shell);
+  add_grid(app, shell);
   add_evaluate(app, shell);
   add_curve(app, shell);
   add_reproduce(app, shell);

@@ -1,0 +1,354 @@
+// dem grid: scattered points to a DEM.
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <optional>
+
+#include "dem/baselines.h"
+#include "dem/gridding.h"
+#include "dem/lattices.h"
+#include "dem/point_files.h"
+#include "verbs.h"
+
+namespace dem::app {
+namespace {
+
+const std::vector<std::pair<std::string, Combine>> kCombine{{"mean", Combine::mean},
+                                                            {"min", Combine::min},
+                                                            {"max", Combine::max},
+                                                            {"median", Combine::median}};
+
+struct Options {
+  std::string points, out, sigma;
+  std::string like, bounds, cell;
+  std::string method{default_fill_method()};
+  std::string delimiter;
+  std::vector<std::string> set;
+  bool nodes = false, snap = false, no_fill = false;
+  PointReadOptions read;
+  BinOptions bin;
+  GriddingOptions gridding;
+};
+
+ChosenMethod choose(const Options& o) {
+  ChosenMethod chosen = find_method(all_fill_methods(), o.method);
+  for (const auto& text : o.set) chosen.settings.push_back(parse_setting(text));
+  if (!o.sigma.empty()) chosen.settings.emplace_back("sigma", "law");
+  // One known cell is cheap to fill: bad settings show before long work.
+  const Filled trial =
+      chosen.method->fill({Raster<float>({1, 1}), Mask({1, 1}, 1), {}, {}}, chosen.settings, {});
+  if (!o.sigma.empty() && trial.sigma.empty())
+    throw std::invalid_argument("sigma: method " + o.method + " gives no standard deviation");
+  return chosen;
+}
+
+void check_options(const Options& o) {
+  if (!o.like.empty() && !(o.bounds.empty() && o.cell.empty() && o.read.to_crs.empty() && !o.nodes))
+    throw std::invalid_argument(
+        "--like says it all: no --bounds, --cell, --nodes or --to-crs beside it");
+  if (!o.bounds.empty() && o.cell.empty())
+    throw std::invalid_argument("--bounds needs --cell, e.g. --cell 30m");
+  if (o.nodes && o.bounds.empty()) throw std::invalid_argument("--nodes is for --bounds");
+  if (o.no_fill && !o.sigma.empty())
+    throw std::invalid_argument("--no-fill leaves nothing to be uncertain about: no --sigma");
+  if (!o.bounds.empty()) parse_bounds(o.bounds);
+  if (!o.cell.empty()) parse_cell_size(o.cell);
+}
+
+char parse_delimiter(const std::string& text) {
+  if (text == "tab" || text == "\\t") return '\t';
+  if (text == "space") return ' ';
+  if (text.size() == 1) return text[0];
+  throw std::invalid_argument("delimiter = " + text + "; must be one character, tab or space");
+}
+
+void append(Points& all, const Points& part) {
+  const auto join = [](auto& to, const auto& from) {
+    to.insert(to.end(), from.begin(), from.end());
+  };
+  join(all.x, part.x);
+  join(all.y, part.y);
+  join(all.z, part.z);
+  join(all.sigma, part.sigma);
+  join(all.weight, part.weight);
+}
+
+struct Read {
+  PointSource source;
+  Binned binned;
+  Extent extent;
+  std::string lattice_from;
+};
+
+/// The lattice, when it is known before the points are.
+std::optional<Lattice> given_lattice(const Options& o, const Run& run) {
+  if (o.like.empty()) return {};
+  const Dem like = read_dem(o.like, {}, run).dem;
+  return Lattice{like.ref, like.size(), like.spacing};
+}
+
+/// The lattice, once the extent of the points and their system are known.
+Lattice chosen_lattice(const Options& o, const Extent& extent, const std::string& crs) {
+  if (o.cell.empty()) return lattice_for(extent, crs);
+  const Bounds bounds = o.bounds.empty()
+                            ? Bounds{extent.west, extent.south, extent.east, extent.north}
+                            : parse_bounds(o.bounds);
+  if (!(bounds.west < bounds.east && bounds.south < bounds.north))
+    throw std::invalid_argument("the points cover no area; give --bounds");
+  return lattice_over(bounds, parse_cell_size(o.cell), crs, o.nodes || o.bounds.empty());
+}
+
+/// Reads the points into bins. They are kept in memory only while the lattice depends on them.
+Read read_into_bins(const Options& o, const Run& run) {
+  Read read;
+  PointReadOptions options = o.read;
+  auto lattice = given_lattice(o, run.part(0, 0.05));
+  if (lattice && !lattice->ref.crs_wkt.empty()) options.to_crs = lattice->ref.crs_wkt;
+  std::optional<PointBins> bins;
+  if (lattice) bins.emplace(*lattice, o.bin);
+  Points all;
+  const Run quiet{run.threads, {}};
+  const auto sink = [&](const Points& part) {
+    read.extent.add(part.x, part.y);
+    if (bins)
+      bins->add(part, quiet);
+    else
+      append(all, part);
+  };
+  read.source = read_points(o.points, options, sink, run.part(0.05, 0.8));
+  if (!bins) {
+    bins.emplace(chosen_lattice(o, read.extent, read.source.crs_wkt), o.bin);
+    bins->add(all, run.part(0.8, 0.9));
+  }
+  read.lattice_from = !o.like.empty()     ? "as " + o.like
+                      : !o.bounds.empty() ? "as asked for"
+                      : !o.cell.empty()   ? "bounds from the points"
+                                          : "cells of half the points' mean distance";
+  read.binned = bins->finish(run.part(0.9, 1));
+  return read;
+}
+
+/// Points that miss the lattice: all of them, and the wrong way round?
+void check_on_lattice(const Options& o, const Read& read) {
+  const Dem& dem = read.binned.dem;
+  if (read.binned.counts.cells > 0) return;
+  const auto& at = dem.ref.to_world;
+  const Extent& e = read.extent;
+  const double east = at[0] + at[1] * dem.size().cols, south = at[3] + at[5] * dem.size().rows;
+  const bool swapped = e.south < east && e.north > at[0] && e.west < at[3] && e.east > south;
+  throw IoError(
+      o.points,
+      fmt::format(
+          "none of its {} points lies on the lattice: they cover x {:.10g} to {:.10g}, y "
+          "{:.10g} to {:.10g}; the lattice x {:.10g} to {:.10g}, y {:.10g} to {:.10g}{}",
+          read.source.points, e.west, e.east, e.south, e.north, at[0], east, south, at[3],
+          swapped ? "; with x and y swapped they would lie there (--x-field, --y-field)" : ""));
+}
+
+std::string plural(std::size_t n, const char* what) {
+  return fmt::format("{} {}{}", grouped(n), what, n == 1 ? "" : "s");
+}
+
+void say_what_was_read(const Options& o, const Read& read, Shell& shell) {
+  const BinCounts& n = read.binned.counts;
+  const Dem& dem = read.binned.dem;
+  for (const auto& note : read.source.notes) shell.say("{}", note);
+  if (read.source.crs_wkt.empty()) shell.say("no coordinate system: units are taken as metres");
+  shell.say("lattice {} x {}, cells of {:.6g} x {:.6g} m ({})", dem.size().cols, dem.size().rows,
+            dem.spacing.dx_m, dem.spacing.dy_m, read.lattice_from);
+  if (read.source.without_z > 0)
+    shell.say("{} without a position or elevation left out", plural(read.source.without_z, "row"));
+  if (read.source.other_class > 0)
+    shell.say("{} of other classes left out", plural(read.source.other_class, "point"));
+  if (n.outside > 0) shell.say("{} outside the lattice left out", plural(n.outside, "point"));
+  if (n.duplicates > 0)
+    shell.say(
+        "{} at the place of another with another elevation: combined by {}",
+        plural(n.duplicates, "point"),
+        std::ranges::find(kCombine, o.bin.combine, &decltype(kCombine)::value_type::second)->first);
+  if (n.outliers > 0) shell.say("{} taken for outliers and left out", plural(n.outliers, "cell"));
+  shell.say("{} in {} of {} cells ({})", plural(n.points - n.outside, "point"), grouped(n.cells),
+            grouped(dem.size().cells()), percent_of(n.cells, dem.size().cells()));
+}
+
+Json as_json(const Read& read) {
+  const BinCounts& n = read.binned.counts;
+  const Dem& dem = read.binned.dem;
+  return {{"format", read.source.format},
+          {"notes", read.source.notes},
+          {"crs", crs_name(dem.ref.crs_wkt)},
+          {"cols", dem.size().cols},
+          {"rows", dem.size().rows},
+          {"cell", {std::abs(dem.ref.to_world[1]), std::abs(dem.ref.to_world[5])}},
+          {"cell_m", {dem.spacing.dx_m, dem.spacing.dy_m}},
+          {"lattice_from", read.lattice_from},
+          {"points", n.points},
+          {"without_z", read.source.without_z},
+          {"other_class", read.source.other_class},
+          {"outside", n.outside},
+          {"combined", n.combined},
+          {"duplicates", n.duplicates},
+          {"outlier_cells", n.outliers},
+          {"known_cells", n.cells}};
+}
+
+void write_outputs(const Options& o, const Dem& dem, const Raster<float>& sigma, Shell& shell,
+                   const Run& run) {
+  WriteOptions write;
+  write.overwrite = shell.overwrite;
+  Source source;
+  source.node_registered = o.nodes;
+  if (!o.sigma.empty()) {
+    Dem of_sigma = dem;
+    of_sigma.z = sigma;
+    Source described = source;
+    described.band_description = "standard deviation of the elevation in metres";
+    write_dem(o.sigma, of_sigma, described, write, run.part(0, 0.4));
+  }
+  if (holds_metadata(o.out, ""))
+    write.metadata = {{"DEM_METHOD", o.no_fill ? "points only" : o.method},
+                      {"DEM_VERSION", DEM_VERSION}};
+  write_dem(o.out, dem, source, write, run.part(0.4, 1));
+}
+
+int grid(Options& o, Shell& shell) {
+  check_options(o);
+  if (!o.delimiter.empty()) o.read.delimiter = parse_delimiter(o.delimiter);
+  o.bin.plane = !o.snap;
+  const ChosenMethod method = choose(o);
+  check_writable(o.out, shell.overwrite);
+  if (!o.sigma.empty()) check_writable(o.sigma, shell.overwrite);
+
+  const Run run = shell.run();
+  Read read = read_into_bins(o, run.part(0, 0.4));
+  check_on_lattice(o, read);
+  say_what_was_read(o, read, shell);
+  Json json = as_json(read);
+  json["output"] = o.out;
+
+  Dem& dem = read.binned.dem;
+  Raster<float> sigma;
+  if (!o.no_fill) {
+    if (o.snap) read.binned.off_centre.clear();
+    const auto start = std::chrono::steady_clock::now();
+    Gridded gridded = fill_points(read.binned, method, o.gridding, run.part(0.4, 0.9));
+    const double seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    dem.z = std::move(gridded.filled.z);
+    dem.known = Mask(dem.size(), 1);
+    sigma = std::move(gridded.filled.sigma);
+    shell.say(
+        "filled by {} in {:.2f} s; the surface misses the points by {:.3g} m (RMS), {:.3g} m "
+        "at most",
+        o.method, seconds, gridded.misfit.rms_m, gridded.misfit.max_m);
+    json["method"] = o.method;
+    json["seconds"] = seconds;
+    json["misfit_rms_m"] = gridded.misfit.rms_m;
+    json["misfit_max_m"] = gridded.misfit.max_m;
+  }
+  write_outputs(o, dem, sigma, shell, run.part(0.9, 1));
+  shell.say("wrote {}", o.out);
+  shell.print(json, "");
+  return kDone;
+}
+
+void add_point_options(CLI::App& verb, Options& o) {
+  const char* group = "Reading points";
+  const auto field = [&](const char* name, std::string& value, const char* doc) {
+    verb.add_option(name, value, doc)->type_name("NAME")->group(group);
+  };
+  field("--x-field", o.read.x_field, "column of x, by name or number from 1; else a usual name");
+  field("--y-field", o.read.y_field, "column of y");
+  field("--z-field", o.read.z_field, "column or attribute of the elevation in metres");
+  field("--sigma-field", o.read.sigma_field, "column of the elevation's standard deviation");
+  field("--weight-field", o.read.weight_field, "column of weights");
+  field("--position-field", o.read.position_field, "column of MGRS, UTM or DMS positions");
+  verb.add_option("--delimiter", o.delimiter, "between columns; else the first that is there")
+      ->type_name("CHAR")
+      ->group(group);
+  verb.add_option("--layer", o.read.layer, "layer of a vector file with several")
+      ->type_name("NAME")
+      ->group(group);
+  verb.add_option("--class", o.read.classes, "LAS classes to take, e.g. 2,8; else all")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(CLI::Range(0, 255).description(""))
+      ->type_name("N,N")
+      ->group(group);
+  verb.add_option_function<double>(
+          "--nodata", [&o](double v) { o.read.nodata = v; }, "an elevation that means none")
+      ->type_name("VALUE")
+      ->group(group);
+  verb.add_option("--crs", o.read.crs, "what x and y are in: EPSG:25832, PROJ, WKT")
+      ->type_name("CRS")
+      ->group(group);
+}
+
+void add_lattice_options(CLI::App& verb, Options& o) {
+  const char* group = "Lattice (else from the density of the points)";
+  verb.add_option("--like", o.like, "the lattice of this raster")
+      ->type_name("RASTER")
+      ->group(group);
+  verb.add_option("--bounds", o.bounds, "outer edges of the cells")
+      ->type_name("W,S,E,N")
+      ->group(group);
+  verb.add_option("--cell", o.cell, "size of a cell with its unit: 30m, 1s, 0.001deg")
+      ->type_name("SIZE")
+      ->group(group);
+  verb.add_flag("--nodes", o.nodes, "bounds are the centres of the outer cells")->group(group);
+  verb.add_option("--to-crs", o.read.to_crs, "coordinate system of the lattice; else the points'")
+      ->type_name("CRS")
+      ->group(group);
+}
+
+}  // namespace
+
+void add_grid(CLI::App& app, Shell& shell) {
+  const auto o = std::make_shared<Options>();
+  auto* verb = add_verb(
+      app, shell, "grid", "Scattered points to a DEM; the surface passes through them",
+      "  dem grid soundings.csv sea.tif                        # cells from the points' density\n"
+      "  dem grid survey.gpkg dem.tif --cell 5m --z-field height\n"
+      "  dem grid lidar.las ground.tif --class 2 --cell 1m --combine median\n"
+      "  zcat p.xyz.gz | dem grid - dem.tif --crs EPSG:4326 --to-crs EPSG:32632 --cell 30m",
+      [o, &shell] { return grid(*o, shell); });
+  verb->add_option("POINTS", o->points, "CSV, XYZ, TSV (-: standard input), LAS, any vector format")
+      ->required()
+      ->type_name("");
+  verb->add_option("OUT", o->out, "the DEM; the format follows the extension")
+      ->required()
+      ->type_name("");
+  verb->add_option("-m,--method", o->method, "how to fill between points (see dem methods)")
+      ->type_name("NAME")
+      ->capture_default_str();
+  verb->add_option("-s,--set", o->set, "a setting of the method; may be repeated")
+      ->allow_extra_args(false)
+      ->type_name("KEY=VALUE");
+  verb->add_option_function<std::string>(
+          "--combine",
+          [o](const std::string& name) {
+            for (const auto& [text, how] : kCombine)
+              if (text == name) o->bin.combine = how;
+          },
+          "several points in a cell: mean, min, max, median; default mean")
+      ->check(CLI::IsMember({"mean", "min", "max", "median"}).description(""))
+      ->type_name("HOW");
+  verb->add_option("--reject-outliers", o->bin.outliers,
+                   "leave out cells so many spreads off their surroundings, e.g. 10")
+      ->check(CLI::Range(1.0, 1e9).description(""))
+      ->type_name("TIMES");
+  verb->add_flag("--snap", o->snap, "take points as lying on their cell's centre");
+  verb->add_option("--passes", o->gridding.passes,
+                   "so often the surface is corrected to meet points between cells")
+      ->check(CLI::Range(0, 100).description(""))
+      ->type_name("N")
+      ->capture_default_str();
+  verb->add_flag("--no-fill", o->no_fill, "only the cells that hold points; others are unknown");
+  verb->add_option("--sigma", o->sigma, "also write the standard deviation of each cell, in metres")
+      ->type_name("FILE");
+  add_lattice_options(*verb, *o);
+  add_point_options(*verb, *o);
+}
+
+}  // namespace dem::app

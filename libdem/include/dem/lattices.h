@@ -1,0 +1,41 @@
+#pragma once
+// Lattices for points: over given bounds, or from how dense the points are.
+
+#include <string>
+
+#include "dem/points.h"
+
+namespace dem {
+
+enum class CellUnit { metres, degrees };
+
+/// The size of a cell, with its unit said: "30m", "1s" (arc second), "0.5min", "0.001deg".
+struct CellSize {
+  double value = 0;
+  CellUnit unit = CellUnit::metres;
+};
+
+/// Throws std::invalid_argument when the text has no number above 0 or no unit.
+CellSize parse_cell_size(const std::string& text);
+
+/// A rectangle in the units of a coordinate system.
+struct Bounds {
+  double west = 0, south = 0, east = 0, north = 0;
+};
+
+/// "W,S,E,N". Throws std::invalid_argument.
+Bounds parse_bounds(const std::string& text);
+
+/// The lattice of square cells over `bounds`, which are the outer edges of its cells (`nodes`: the
+/// centres of the outer ones). Where they are no whole number of cells apart, east and south give
+/// way. On degrees, a cell given in metres is square in metres at the middle latitude; on metres, a
+/// cell in degrees is an error.
+/// Throws std::invalid_argument: no area, cells that do not suit the system, more than 2^31 cells.
+Lattice lattice_over(const Bounds& bounds, CellSize cell, const std::string& crs_wkt, bool nodes);
+
+/// The lattice that suits points as dense as these: cells of half their mean distance, 1, 2 or 5
+/// times a power of ten of the system's unit, on multiples of that.
+/// Throws std::invalid_argument when the points cover no area.
+Lattice lattice_for(const Extent& extent, const std::string& crs_wkt);
+
+}  // namespace dem
