@@ -27,12 +27,12 @@ PARTS = {
     "mcmd": ["lattice", "midpoint", "pyramid", "row_kernels", "waves"],
     "networks": ["growth", "ridges", "rivers"],
     "raytrace": ["heightfield"],
-    "spline": ["grid", "multigrid", "overshoot", "spline_parameters", "spline_sample", "spline_solver", "springs", "tensor"],
+    "spline": ["grid", "multigrid", "overshoot", "roughness", "spline_parameters", "spline_sample", "spline_solver", "springs", "tensor"],
 }
 
 # The algorithms that call another: the spline's solver starts from MCMD's surface, and generators
 # end with it.
-CALLS = {("spline", "mcmd"), ("spline_parameters", "mcmd"), ("networks", "mcmd")}
+CALLS = {("spline", "mcmd"), ("spline_parameters", "mcmd"), ("roughness", "mcmd"), ("networks", "mcmd")}
 
 # The layers that each layer may include. Algorithms do not include each other: they compose
 # through data.

@@ -4,7 +4,8 @@
     scripts/compare.py TRUTH FOLDER [--sample='--keep 3.4%'] [--only REGEX] [--repeat 3]
 
 Cells are removed from TRUTH, which should be whole, by `dem sample`; each program fills them; RMSE,
-mean and largest error are taken over the removed cells. Writes FOLDER/compare.csv and compare.svg.
+mean and largest error are taken over the removed cells. Writes FOLDER/compare.csv, compare.svg and
+compare.json; the last one `dem curve --rivals` draws into its picture.
 
 CPU seconds are user plus system time of the program that fills, its start and the files it reads
 and writes itself included; conversions before and after are not counted. With --repeat it is the median.
@@ -27,6 +28,7 @@ import statistics
 import subprocess
 import sys
 import tempfile
+import time
 
 try:
     import numpy
@@ -70,7 +72,8 @@ class Failed(Exception):
 
 
 def run(command, folder, timeout):
-    """Runs one command line; returns its CPU seconds."""
+    """Runs one command line; returns its CPU seconds and its wall seconds."""
+    start = time.monotonic()
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     process = subprocess.Popen(shlex.split(command), cwd=folder, stdin=subprocess.DEVNULL, start_new_session=True,
                                stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace")
@@ -83,7 +86,8 @@ def run(command, folder, timeout):
     if process.returncode != 0:
         raise Failed(f"exit code {process.returncode}: {' '.join(said.split())[-200:]}")
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    return cpu, time.monotonic() - start
 
 
 def read(path):
@@ -158,14 +162,14 @@ def contestants(dem, problem):
 
 
 def fill(commands, problem, folder, timeout):
-    """Lets one contestant fill the problem; returns the heights and its CPU seconds."""
+    """Lets one contestant fill the problem; returns the heights, its CPU seconds and its wall seconds."""
     before, timed, after = commands
     for command in before:
         run(command.format(**problem), folder, timeout)
-    seconds = run(timed.format(**problem), folder, timeout)
+    cpu, wall = run(timed.format(**problem), folder, timeout)
     for command in after:
         run(command.format(**problem), folder, timeout)
-    return read(folder / "filled.tif"), seconds
+    return read(folder / "filled.tif"), cpu, wall
 
 
 def fill_the_rest(dem, z, folder):
@@ -177,23 +181,25 @@ def fill_the_rest(dem, z, folder):
 
 def measure(name, commands, problem, args):
     """One row of the table."""
-    seconds = []
+    cpu, wall = [], []
     for _ in range(args.repeat):
         with tempfile.TemporaryDirectory(prefix="compare") as folder:
             folder = pathlib.Path(folder)
             try:
-                filled, cpu = fill(commands, problem, folder, args.timeout)
+                filled, *seconds = fill(commands, problem, folder, args.timeout)
             except Failed as why:
                 return {"method": name, "outcome": str(why)}
             empty = int(numpy.isnan(filled).sum())
             if empty:
                 filled = fill_the_rest(args.dem, filled, folder)
-        seconds.append(cpu)
+        cpu.append(seconds[0])
+        wall.append(seconds[1])
     removed = numpy.isnan(problem["heights"]) & ~numpy.isnan(problem["truth"])
     error = (filled - problem["truth"])[removed]
     return {"method": name, "outcome": "filled" if not empty else f"{empty} cells left empty",
             "rmse_m": float(numpy.sqrt(numpy.mean(error**2))), "mae_m": float(numpy.mean(numpy.abs(error))),
-            "max_m": float(numpy.max(numpy.abs(error))), "cpu_s": statistics.median(seconds)}
+            "max_m": float(numpy.max(numpy.abs(error))), "cpu_s": statistics.median(cpu),
+            "wall_s": statistics.median(wall)}
 
 
 def pose_problem(args, folder):
@@ -282,11 +288,15 @@ def main():
 
     print_table(rows)
     with open(args.folder / "compare.csv", "w", newline="", encoding="utf-8") as file:
-        table = csv.DictWriter(file, ["method", "rmse_m", "mae_m", "max_m", "cpu_s", "outcome"])
+        table = csv.DictWriter(file, ["method", "rmse_m", "mae_m", "max_m", "cpu_s", "wall_s", "outcome"])
         table.writeheader()
         table.writerows(rows)
     title = f"{pathlib.Path(args.truth).name}, dem sample {args.sample}"
     scored = [r for r in rows if "rmse_m" in r]
+    known, kept = (int(numpy.count_nonzero(~numpy.isnan(problem[k]))) for k in ("truth", "heights"))
+    kept_part = {"kept_percent": round(100 * kept / known, 3), "kept_cells": kept}
+    (args.folder / "compare.json").write_text(
+        json.dumps({"title": title, "scores": [kept_part | r for r in scored]}, indent=1) + "\n", encoding="utf-8")
     if scored:
         (args.folder / "compare.svg").write_text(picture(scored, title), encoding="utf-8")
     print(f"\n{args.folder / 'compare.csv'}\n{args.folder / 'compare.svg'}")

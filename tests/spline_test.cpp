@@ -467,6 +467,24 @@ TEST(SplineSigma, IsZeroAtDataAndGrowsAwayFromThem) {
   }
 }
 
+TEST(FillSpline, IsLessCertainWhereTheGroundIsRough) {
+  // Bumps in the west, a gentle slope in the east, a tenth of the cells known.
+  Dem dem{Raster<float>({128, 64}), Mask({128, 64}), {}, {}};
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 128; ++x) {
+      const double bump = double(random_bits(1, 0, x / 3, y / 3) % 1000) / 10;
+      dem.z(x, y) = float(x < 64 ? 500 + bump : 500 + 0.1 * x);
+      dem.known(x, y) = random_bits(2, 0, x, y) % 10 == 0;
+    }
+  SplineOptions options;
+  options.sigma = SplineSigma::law;
+  const Filled filled = fill_spline(dem, options);
+  double west = 0, east = 0;
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 128; ++x) (x < 64 ? west : east) += double(filled.sigma(x, y));
+  EXPECT_GT(west, 5 * east);
+}
+
 TEST(SplineSigma, IsTheSpreadOfDrawsFromTheSpringsWhenTheTruthIsOne) {
   // Truth drawn from the springs themselves: sigma must be right without any calibration.
   // Parameters by hand, so that no cell is hidden.

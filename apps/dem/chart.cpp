@@ -165,8 +165,8 @@ std::string draw_panel(const Panel& panel) {
       points += fmt::format("{:.1f},{:.1f} ", x(s.x[j]), y(s.y[j]));
     if (s.line)
       svg += fmt::format(
-          "<polyline fill=\"none\" stroke=\"{}\" stroke-width=\"1.8\" points=\"{}\"/>\n", colour,
-          points);
+          "<polyline fill=\"none\" stroke=\"{}\" stroke-width=\"1.8\"{} points=\"{}\"/>\n", colour,
+          s.dashed ? " stroke-dasharray=\"5 4\"" : "", points);
     for (std::size_t j = 0; s.marks && j < s.x.size(); ++j)
       svg += mark(int(i), x(s.x[j]), y(s.y[j]), colour);
     const double right = kLeft + kPlotWidth;

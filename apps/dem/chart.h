@@ -10,7 +10,7 @@ namespace dem::app {
 struct Series {
   std::string name;
   std::vector<double> x, y;
-  bool line = true, marks = true;
+  bool line = true, marks = true, dashed = false;
 };
 
 struct Axis {

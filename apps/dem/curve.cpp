@@ -11,12 +11,18 @@ namespace {
 
 struct Options {
   std::string truth, dir;
+  std::vector<std::string> rivals;
   CurveOptions curve;
   ReadOptions read;
 };
 
 int curve(const Options& o, Shell& shell) {
   check(o.curve);
+  CurveOptions options = o.curve;
+  for (const auto& path : o.rivals) {
+    const auto scores = read_rivals(path);
+    options.rivals.insert(options.rivals.end(), scores.begin(), scores.end());
+  }
   const OutputFolder folder(o.dir);
   for (const char* name : kCurveFiles) check_writable(folder.file(name), shell.overwrite);
 
@@ -24,13 +30,13 @@ int curve(const Options& o, Shell& shell) {
   const DemFile file = read_dem(o.truth, o.read, run.part(0, 0.02));
   if (count(file.dem.known) < 2)
     throw IoError(o.truth, "fewer than two known cells; nothing to remove");
-  const auto scores = measure_curve(file.dem, o.curve, run.part(0.02, 1));
+  const auto scores = measure_curve(file.dem, options, run.part(0.02, 1));
   const std::string title = "Filling " + std::filesystem::path(o.truth).filename().string();
-  Json json = write_curve(folder, title, file.dem, o.curve, scores, shell.overwrite);
+  Json json = write_curve(folder, title, file.dem, options, scores, shell.overwrite);
 
   json["files"] = Json::array();
   for (const char* name : kCurveFiles) json["files"].push_back(folder.file(name));
-  shell.print(json, curve_table(scores));
+  shell.print(json, curve_table(scores, options));
   shell.say("wrote {}, {}, {}", folder.file("curves.csv"), folder.file("curves.json"),
             folder.file("curves.svg"));
   return kDone;
@@ -63,6 +69,10 @@ void add_curve(CLI::App& app, Shell& shell) {
       ->check(CLI::Range(1, 1000).description(""))
       ->type_name("N")
       ->capture_default_str();
+  verb->add_option("--rivals", o->rivals,
+                   "scores of other programs, from scripts/compare.py: into the same picture")
+      ->allow_extra_args(false)
+      ->type_name("FILE");
   verb->add_option("--seed", o->curve.seed, "of the cells that are kept")
       ->type_name("N")
       ->capture_default_str();

@@ -1,7 +1,10 @@
 #include "experiment.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
+#include <fstream>
 #include <map>
 #include <set>
 
@@ -37,6 +40,13 @@ std::string csv(const std::vector<Score>& scores) {
   return text;
 }
 
+Score score_of(const Json& j) {
+  Score s{j.at("method"), j.at("kept_percent"), j.value("kept_cells", std::size_t{0}), {}, {}};
+  s.errors.rmse_m = j.at("rmse_m");
+  s.times = {j.at("wall_s"), j.at("cpu_s")};
+  return s;
+}
+
 Json as_json(const Score& s) {
   return {{"method", s.method},
           {"kept_percent", s.percent},
@@ -61,23 +71,28 @@ std::string svg(const std::string& title, const Dem& truth, const CurveOptions& 
       rate.ticks.push_back(tick);
   Panel error{"Error", rate, {"RMSE over the removed cells, m", true}, {}};
   Panel time{"Time", rate, {"wall time of one fill, s", true}, {}};
-  for (const auto& name : methods_of(scores)) {
-    Series rmse{name, {}, {}}, wall{name, {}, {}};
-    for (const auto& s : scores) {
-      if (s.method != name || !std::isfinite(s.errors.rmse_m)) continue;
-      rmse.x.push_back(s.percent), rmse.y.push_back(std::max(s.errors.rmse_m, 1e-6));
-      wall.x.push_back(s.percent), wall.y.push_back(std::max(s.times.wall_s, 1e-6));
+  const auto draw = [&](const std::vector<Score>& from, bool dashed) {
+    for (const auto& name : methods_of(from)) {
+      Series rmse{name, {}, {}}, wall{name, {}, {}};
+      rmse.dashed = wall.dashed = dashed;
+      for (const auto& s : from) {
+        if (s.method != name || !std::isfinite(s.errors.rmse_m)) continue;
+        rmse.x.push_back(s.percent), rmse.y.push_back(std::max(s.errors.rmse_m, 1e-6));
+        wall.x.push_back(s.percent), wall.y.push_back(std::max(s.times.wall_s, 1e-6));
+      }
+      error.series.push_back(rmse);
+      time.series.push_back(wall);
     }
-    error.series.push_back(rmse);
-    time.series.push_back(wall);
-  }
-  return svg_chart(
-      title,
-      fmt::format("{} x {} cells, kept at random (seed {}), then filled; time is the median "
-                  "of {} run{}.",
-                  truth.z.cols(), truth.z.rows(), options.seed, options.repeats,
-                  options.repeats == 1 ? "" : "s"),
-      {error, time});
+  };
+  draw(scores, false);
+  draw(options.rivals, true);
+  std::string note = fmt::format(
+      "{} x {} cells, kept at random (seed {}), then filled; time is the median of {} run{}.",
+      truth.z.cols(), truth.z.rows(), options.seed, options.repeats,
+      options.repeats == 1 ? "" : "s");
+  if (!options.rivals.empty())
+    note += " Dashed: other programs; their time includes start, reading and writing.";
+  return svg_chart(title, note, {error, time});
 }
 
 }  // namespace
@@ -96,6 +111,23 @@ std::vector<std::string> CurveOptions::curve_methods() {
       if (p.name == "paper") names.push_back(m.name + ":" + p.name);
   }
   return names;
+}
+
+std::vector<Score> read_rivals(const std::string& path) {
+  std::ifstream file(path);
+  if (!file) throw IoError(path, std::strerror(errno));
+  try {
+    std::vector<Score> scores;
+    const Json json = Json::parse(file);
+    for (const auto& score : json.at("scores"))
+      // Our own methods are measured anew.
+      if (!score.at("method").get<std::string>().starts_with("dem "))
+        scores.push_back(score_of(score));
+    return scores;
+  } catch (const Json::exception& error) {
+    throw IoError(
+        path, fmt::format("no table of scores as scripts/compare.py writes it: {}", error.what()));
+  }
 }
 
 void check(const CurveOptions& options) {
@@ -148,13 +180,20 @@ Json write_curve(const OutputFolder& folder, const std::string& title, const Dem
             {"seed", options.seed},   {"repeats", options.repeats},
             {"scores", Json::array()}};
   for (const auto& s : scores) json["scores"].push_back(as_json(s));
+  for (const auto& s : options.rivals)
+    json["rivals"].push_back({{"method", s.method},
+                              {"kept_percent", s.percent},
+                              {"rmse_m", s.errors.rmse_m},
+                              {"wall_s", s.times.wall_s},
+                              {"cpu_s", s.times.cpu_s}});
   write_text(folder.file("curves.csv"), csv(scores), overwrite);
   write_text(folder.file("curves.json"), json.dump(1) + "\n", overwrite);
   write_text(folder.file("curves.svg"), svg(title, truth, options, scores), overwrite);
   return json;
 }
 
-std::string curve_table(const std::vector<Score>& scores) {
+std::string curve_table(std::vector<Score> scores, const CurveOptions& options) {
+  scores.insert(scores.end(), options.rivals.begin(), options.rivals.end());
   const auto methods = methods_of(scores);
   std::map<double, std::map<std::string, const Score*>, std::greater<>> rows;
   for (const auto& s : scores) rows[s.percent][s.method] = &s;
@@ -166,7 +205,11 @@ std::string curve_table(const std::vector<Score>& scores) {
     text += "\n";
     for (const auto& [percent, row] : rows) {
       text += fmt::format("{:>7}", percent);
-      for (const auto& m : methods) text += fmt::format(" {:>11}", cell(*row.at(m)));
+      for (const auto& m : methods) {
+        const auto at = row.find(m);
+        const std::string value = at == row.end() ? "-" : cell(*at->second);
+        text += fmt::format(" {:>{}}", value, std::max<std::size_t>(11, m.size()));
+      }
       text += "\n";
     }
   };

@@ -49,10 +49,15 @@ struct CurveOptions {
   std::vector<double> percents{99, 95, 90, 80, 70, 60, 50, 40, 30, 20, 10, 5, 3.4, 2, 1};
   int repeats = 3;
   std::uint64_t seed = 1;
+  std::vector<Score> rivals{};  ///< of other programs, measured elsewhere: into the same picture
 
   /// Every fill method, and those presets called `paper`.
   static std::vector<std::string> curve_methods();
 };
+
+/// The scores in a file that scripts/compare.py or write_curve made: those of other programs.
+/// Throws IoError.
+std::vector<Score> read_rivals(const std::string& path);
 
 /// Throws std::invalid_argument unless every method exists and every rate leaves cells to fill.
 void check(const CurveOptions& options);
@@ -66,7 +71,7 @@ inline constexpr const char* kCurveFiles[] = {"curves.csv", "curves.json", "curv
 Json write_curve(const OutputFolder& folder, const std::string& title, const Dem& truth,
                  const CurveOptions& options, const std::vector<Score>& scores, bool overwrite);
 
-/// RMSE and time as a table, a row for each rate.
-std::string curve_table(const std::vector<Score>& scores);
+/// RMSE and time as a table, a row for each rate; the rivals' columns last.
+std::string curve_table(std::vector<Score> scores, const CurveOptions& options);
 
 }  // namespace dem::app

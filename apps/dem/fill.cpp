@@ -158,6 +158,7 @@ int fill(const Options& o, Shell& shell) {
   DemFile file = read_dem(o.in, o.read, run.part(0, 0.2));
   if (count(file.dem.known) == 0)
     throw IoError(o.in, "no known cell; at least one is needed to fill the others");
+  warn_of_outliers(file.dem, shell);
   const FillRequest request{chosen,           o.choice,         o.whole,
                             !o.table.empty(), !o.sigma.empty(), !o.origin.empty()};
   const FillOutcome out = fill_holes_of(file.dem, request, run.part(0.2, 0.8));

@@ -135,7 +135,7 @@ Findings reproduce_mount_washington(const ReproduceOptions& o, const OutputFolde
   const auto scores = measure_curve(truth, curve, run.part(0.15, 1));
   f.extra["curve"] = write_curve(folder, "Mount Washington: error and time against cells kept",
                                  truth, curve, scores, shell.overwrite);
-  f.table = curve_table(scores);
+  f.table = curve_table(scores, curve);
   f.pictures.push_back(folder.file("curves.svg"));
   return f;
 }

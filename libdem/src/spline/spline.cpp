@@ -10,6 +10,7 @@
 #include "dem/mcmd.h"
 #include "overshoot.h"
 #include "parallel.h"
+#include "roughness.h"
 #include "spline_parameters.h"
 #include "spline_sample.h"
 #include "spline_solver.h"
@@ -197,29 +198,47 @@ double spring_scale(const Springs& springs, const Grid<double>& x, const Dem& de
   return std::sqrt(spring_energy(springs, x) / double(count(dem.known)));
 }
 
+/// Standard deviations of the filled cells.
 struct Uncertainty {
-  double scale = 1;     ///< sigma = scale * root of the law, with rounding of the data added
+  double scale = 1;     ///< of the springs
   double rounding = 0;  ///< variance of whole metres
+  double contour_step = 0;
+  Roughness roughness;
   DistanceLaw law;
-  double sigma(double fifths) const {
-    return std::sqrt(scale * scale * law.variance(fifths) + rounding);
+
+  /// The springs' scale at a cell.
+  double scale_at(int col, int row) const { return scale * roughness.at(col, row); }
+
+  /// From a variance in units of the springs' scale.
+  double sigma(double variance, int col, int row) const {
+    const double local = scale_at(col, row);
+    return std::sqrt(local * local * variance + rounding);
+  }
+
+  /// From the distance to data, in fifths of a cell. Between contour lines the data say more than
+  /// springs do: about a fifth of the step (seven terrains).
+  double sigma_by_distance(double fifths, int col, int row) const {
+    if (contour_step > 0) return 0.22 * contour_step * std::min(1., fifths / 8);
+    return sigma(law.variance(fifths), col, row);
   }
 };
 
-/// Widens or narrows the scale until 68 % of the hidden cells lie within one sigma. Returns the
+/// Widens or narrows the scale until 72 % of the hidden cells lie within one sigma. Returns the
 /// parts within one and two.
 std::pair<double, double> calibrate(Uncertainty& u, const std::vector<HeldOut>& cells) {
   if (cells.empty()) return {0, 0};
+  const auto sigmas = [&](const HeldOut& c) {
+    return std::abs(double(c.error_m)) / u.sigma_by_distance(c.distance, c.col, c.row);
+  };
   std::vector<double> ratio;
-  for (const HeldOut& c : cells) ratio.push_back(std::abs(double(c.error_m)) / u.sigma(c.distance));
+  for (const HeldOut& c : cells) ratio.push_back(sigmas(c));
   const auto at = ratio.begin() + std::ptrdiff_t(0.72 * double(ratio.size()));
   std::ranges::nth_element(ratio, at);
   u.scale *= std::max(*at, 0.05);
   double one = 0, two = 0;
   for (const HeldOut& c : cells) {
-    const double sigmas = std::abs(double(c.error_m)) / u.sigma(c.distance);
-    one += sigmas <= 1;
-    two += sigmas <= 2;
+    one += sigmas(c) <= 1;
+    two += sigmas(c) <= 2;
   }
   return {one / double(cells.size()), two / double(cells.size())};
 }
@@ -244,9 +263,11 @@ void sample(const Dem& dem, const SplineOptions& options, const ChosenSprings& c
             const Run& run) {
   Simulation simulation(solver, springs, options.seed);
   const auto distance = distances_to_known(dem.known);
-  Uncertainty uncertainty;
-  uncertainty.scale = spring_scale(springs, x, dem);
-  uncertainty.rounding = all_whole_metres(dem) ? 1 / 12. : 0;
+  Uncertainty uncertainty{spring_scale(springs, x, dem),
+                          all_whole_metres(dem) ? 1 / 12. : 0,
+                          chosen.contour_step_m,
+                          Roughness(x, dem.known, squared_aspect(dem.spacing), {}),
+                          {}};
 
   const bool simulate = options.sigma == SplineSigma::simulation;
   const int draws = simulate ? options.realisations : 2;
@@ -268,13 +289,12 @@ void sample(const Dem& dem, const SplineOptions& options, const ChosenSprings& c
 
   if (options.sigma != SplineSigma::none) {
     filled.sigma = Raster<float>(dem.size());
-    const double scale2 = uncertainty.scale * uncertainty.scale;
     parallel_for(0, dem.size().rows, 32, [&](int row) {
       for (int col = 0; col < dem.size().cols; ++col) {
         if (dem.known(col, row)) continue;
-        filled.sigma(col, row) = float(
-            simulate ? std::sqrt(scale2 * double(squares(col, row)) / draws + uncertainty.rounding)
-                     : uncertainty.sigma(distance(col, row)));
+        filled.sigma(col, row) =
+            float(simulate ? uncertainty.sigma(double(squares(col, row)) / draws, col, row)
+                           : uncertainty.sigma_by_distance(distance(col, row), col, row));
       }
     });
   }
@@ -282,7 +302,8 @@ void sample(const Dem& dem, const SplineOptions& options, const ChosenSprings& c
     const Grid<double> d = simulation.draw(options.realisation, run);
     for (int row = 0; row < dem.size().rows; ++row)
       for (int col = 0; col < dem.size().cols; ++col)
-        if (!dem.known(col, row)) x.row(row)[col] += uncertainty.scale * d.row(row)[col];
+        if (!dem.known(col, row))
+          x.row(row)[col] += uncertainty.scale_at(col, row) * d.row(row)[col];
   }
 }
 

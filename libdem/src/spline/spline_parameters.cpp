@@ -24,6 +24,7 @@ struct Hidden {
 };
 
 struct Trial {
+  int col, row;  // of its first cell
   Dem dem;
   std::vector<Hidden> hidden;
   Grid<double> x;  ///< the surface of the last candidate: the start of the next
@@ -58,7 +59,8 @@ std::vector<HeldOut> held_out(const std::vector<Trial>& trials) {
   for (const Trial& t : trials) {
     const auto distance = distances_to_known(t.dem.known);
     for (const Hidden& h : t.hidden)
-      all.push_back({float(t.x.row(h.row)[h.col] - h.z), distance(h.col, h.row)});
+      all.push_back({float(t.x.row(h.row)[h.col] - h.z), distance(h.col, h.row), t.col + h.col,
+                     t.row + h.row});
   }
   return all;
 }
@@ -103,7 +105,7 @@ std::vector<Trial> scattered_trials(const Dem& dem) {
                                size.cols - window.cols);
     const int row = std::clamp(size.rows * (1 + 2 * (part / 2)) / 4 - window.rows / 2, 0,
                                size.rows - window.rows);
-    Trial trial{window_of(dem, col, row, window), {}, {}, 0};
+    Trial trial{col, row, window_of(dem, col, row, window), {}, {}, 0};
     for (int y = 0; y < window.rows; ++y)
       for (int x = 0; x < window.cols; ++x)
         if (trial.dem.known(x, y) && random_bits(seed, std::uint64_t(part), x, y) % one_in == 0)
@@ -240,7 +242,7 @@ std::vector<Trial> disk_trials(const Dem& dem, const std::vector<Disk>& disks, b
     const int col = std::max(0, disk.col - half), row = std::max(0, disk.row - half);
     const Size window{std::min(size.cols, disk.col + half + 1) - col,
                       std::min(size.rows, disk.row + half + 1) - row};
-    Trial trial{window_of(dem, col, row, window), {}, {}, 0};
+    Trial trial{col, row, window_of(dem, col, row, window), {}, {}, 0};
     for_disk(disk, size, [&](int x, int y) {
       if (dem.known(x, y)) hide(trial, x - col, y - row);
     });
@@ -452,7 +454,7 @@ ChosenSprings choose_springs(const Dem& dem, Layout layout, const Raster<std::ui
       // A line is only as exact as the cells it runs through: it pulls as hard as the springs do at
       // a wavelength of 3.5 cells.
       const double K = std::pow(2 * std::numbers::pi / 3.5, 2);
-      return {64, 0, true, 1 / (K * K), Layout::contours, 0, 0, {}};
+      return {64, 0, true, 1 / (K * K), Layout::contours, 0, 0, {}, contour_step(dem)};
     }
   }
   return {};

@@ -14,6 +14,7 @@ enum class Layout { scattered, clustered, contours };
 struct HeldOut {
   float error_m;
   std::uint16_t distance;
+  int col, row;
 };
 
 struct ChosenSprings {
@@ -24,6 +25,7 @@ struct ChosenSprings {
   double hidden_rmse_m = 0;  ///< of the cells that were hidden, with the springs chosen
   int hidden_cells = 0;
   std::vector<HeldOut> held_out;  ///< the same, one by one
+  double contour_step_m = 0;      ///< between contour lines
 };
 
 /// Distances (chamfer 5-7-11, in fifths of a cell, at most 65535) of all cells to the nearest known.

@@ -1,0 +1,25 @@
+#pragma once
+// How rough the terrain is here, against the whole: by it the uncertainty differs from place to
+// place. Private to the library.
+
+#include "dem/dem.h"
+#include "dem/run.h"
+#include "grid.h"
+
+namespace dem {
+
+class Roughness {
+ public:
+  /// Reads the second differences of a surface at its known cells, as means over blocks of 8 x 8
+  /// cells and their neighbours; blocks without data get theirs from those around, by MCMD on the
+  /// logarithm. X = (dy / dx)^2.
+  Roughness(const Grid<double>& surface, const Mask& known, double X, const Run& run);
+
+  /// The RMS of the second differences around a cell over that of all known cells.
+  double at(int col, int row) const;
+
+ private:
+  Raster<float> log_;  // by block: 2 log of what at() returns
+};
+
+}  // namespace dem
