@@ -50,11 +50,12 @@ struct Eroded {
 /// rock steeper than the talus angle slides.
 /// Method:   [musgrave1989] section 4. In each step a cell passes the water f sum(d_k g_k) on, d_k >=
 ///           0 its surface above neighbour k, g_k = (shortest distance) / (distance of k), f at most
-///           1 / (2 sum g_k), so that water levels out and does not swing. It may carry K_c times
-///           that; it lifts K_s of what is missing, drops K_d of what is too much. Soil slides by
-///           c_t / 8 of what a slope exceeds the talus by. Departures: slopes, not differences;
-///           digging at most halfway to the lowest neighbour; the printed signs of the deposit at v
-///           and of c_t are taken as misprints.
+///           1 / (4 sum g_k), so that water levels out and does not swing. It may carry K_c times
+///           that; it lifts K_s of what is missing, drops K_d of what is too much. Soil slides to
+///           each neighbour by c_t / 16 of what the slope exceeds the talus by. Departures: slopes,
+///           not differences; a step digs at most an eighth of the mean drop, and fills at most the
+///           water's depth and an eighth of the mean rise, or towers would grow; the printed signs
+///           of the deposit at v and of c_t are taken as misprints.
 /// Rain:     rain_mm, and rain_mm_per_km for each kilometre above the lowest cell (the paper's
 ///           thousandth of the height), every rain_every steps.
 /// Needs:    known cells finite. Unknown cells are outside, behind a wall: nothing flows in or out,

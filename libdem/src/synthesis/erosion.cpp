@@ -31,7 +31,7 @@ constexpr double kTiny = 1e-300;  // keeps 0 / 0 out
 /// The factors of one run.
 struct Rates {
   double gx, gy, gd;        // 1 over the distance of neighbours, the nearest: 1
-  double most;              // share of a slope that may flow, or be dug, in a step
+  double most, dig;         // share of a slope that may flow, and be dug or filled, in a step
   double K_c, K_d, K_s;     // sediment capacity, deposition, softness
   double slide;             // share of the excess over the talus that slides to each neighbour
   double tx, ty, td;        // talus, in metres of height
@@ -46,11 +46,12 @@ Rates make_rates(const ErosionOptions& o, Spacing s, double base_m) {
   return {gx,
           gy,
           gd,
-          0.5 / (2 * gx + 2 * gy + 4 * gd),
+          0.25 / (2 * gx + 2 * gy + 4 * gd),
+          0.125 / (2 * gx + 2 * gy + 4 * gd),
           o.K_c,
           o.K_d,
           o.K_s,
-          o.c_t / 8,
+          o.c_t / 16,
           talus * s.dx_m,
           talus * s.dy_m,
           talus * diagonal,
@@ -78,11 +79,17 @@ DEM_VECTORISED void add_rows(In a, In w, int n, Out sum) {
   for (int c = 0; c < n; ++c) sum[c] = a[c] + w[c];
 }
 
-/// How far the surface lies above its lower neighbours, summed, each over its distance.
-DEM_VECTORISED void sum_slopes(In up, In here, In down, const Rates& r, int n, Out slope) {
+/// How far the surface lies above its lower neighbours, and below its higher ones, summed, each over
+/// its distance.
+DEM_VECTORISED void sum_slopes(In up, In here, In down, const Rates& r, int n, Out slope,
+                               Out rise) {
   const double gx = r.gx, gy = r.gy, gd = r.gd;
   for (int c = 0; c < n; ++c) {
     const double h = here[c];
+    rise[c] = gx * (above(here[c - 1] - h) + above(here[c + 1] - h)) +
+              gy * (above(up[c] - h) + above(down[c] - h)) +
+              gd * ((above(up[c - 1] - h) + above(up[c + 1] - h)) +
+                    (above(down[c - 1] - h) + above(down[c + 1] - h)));
     slope[c] = gx * (above(h - here[c - 1]) + above(h - here[c + 1])) +
                gy * (above(h - up[c]) + above(h - down[c])) +
                gd * ((above(h - up[c - 1]) + above(h - up[c + 1])) +
@@ -91,19 +98,19 @@ DEM_VECTORISED void sum_slopes(In up, In here, In down, const Rates& r, int n, O
 }
 
 /// What each cell keeps (kept_*) and what it gives: water and sediment per unit of slope.
-DEM_VECTORISED void give(In slope_row, In a_row, In w_row, In s_row, const Rates& r, int n,
-                         Out kept_a, Out kept_w, Out kept_s, Out water, Out sediment) {
-  const double most = r.most, K_c = r.K_c, K_d = r.K_d, K_s = r.K_s;
+DEM_VECTORISED void give(In slope_row, In rise_row, In a_row, In w_row, In s_row, const Rates& r,
+                         int n, Out kept_a, Out kept_w, Out kept_s, Out water, Out sediment) {
+  const double most = r.most, dig = r.dig, K_c = r.K_c, K_d = r.K_d, K_s = r.K_s;
   for (int c = 0; c < n; ++c) {
     const double slope = slope_row[c], w = w_row[c], s = s_row[c];
     const double f = std::min(w / (slope + kTiny), most);
     const double flow = f * slope;
     const double lack = K_c * flow - s;  // capacity not used, or (below 0) sediment too much
-    const double dug = std::min(K_s * above(lack), most * slope);
+    const double dug = std::min(K_s * above(lack), dig * slope);
     const double rest = above(-lack);
-    const double dropped = K_d * rest;
+    const double dropped = std::min(K_d * rest, w + dig * rise_row[c]);
     kept_a[c] = a_row[c] + (dropped - dug);
-    kept_w[c] = w - flow;
+    kept_w[c] = above(w - flow);  // rounding may have taken more than there was
     kept_s[c] = rest - dropped;
     water[c] = f;
     sediment[c] = ((s - rest) + dug) / (slope + kTiny);
@@ -181,10 +188,11 @@ class Ring {
 };
 
 struct Scratch {
-  Ring surface, slope, rained, a, w, s, water, sediment;
+  Ring surface, slope, rise, rained, a, w, s, water, sediment;
   explicit Scratch(int cols)
       : surface(cols, kOutside),
         slope(cols, 0),
+        rise(cols, 0),
         rained(cols, 0),
         a(cols, kOutside),
         w(cols, 0),
@@ -234,9 +242,9 @@ class Step {
       return;
     }
     const Three h = t.surface.around(r);
-    sum_slopes(h.up, h.here, h.down, rates_, n, t.slope[r]);
-    give(t.slope[r], now.a.row(r), t.rained[r], now.s.row(r), rates_, n, t.a[r], t.w[r], t.s[r],
-         t.water[r], t.sediment[r]);
+    sum_slopes(h.up, h.here, h.down, rates_, n, t.slope[r], t.rise[r]);
+    give(t.slope[r], t.rise[r], now.a.row(r), t.rained[r], now.s.row(r), rates_, n, t.a[r], t.w[r],
+         t.s[r], t.water[r], t.sediment[r]);
   }
 
   void take_row(const State& now, int r, Scratch& t, State& next, double& carried) const {
