@@ -13,8 +13,8 @@ import tempfile
 LAYERS = {
     "values": ["canvas", "dem", "fields", "raster", "run"],
     "helpers": ["flood", "gradient", "parallel", "paths", "random", "vectorised"],  # private: for any algorithm
-    "algorithms": ["baseline", "draw", "evaluate", "holes", "mcmd", "networks", "noise", "outliers", "points",
-                   "raytrace", "sample", "spline"],
+    "algorithms": ["baseline", "draw", "erosion", "evaluate", "faults", "holes", "mcmd", "networks", "noise", "outliers",
+                   "points", "raytrace", "sample", "spline"],
     "methods": ["generators", "gridding", "methods"],
     "io": ["baselines", "cells", "crs", "gdal_raster", "gdal_support", "geodesy", "heightmap", "hgt", "image", "io",
            "las", "lattices", "nodata", "ogr_layers", "oiio_support", "point_files", "point_reading", "point_text",

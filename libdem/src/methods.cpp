@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "dem/baseline.h"
+#include "dem/faults.h"
 #include "dem/generators.h"
 #include "dem/mcmd.h"
 #include "dem/noise.h"
@@ -20,6 +21,12 @@ std::vector<FieldInfo> describe(const std::vector<Field>& fields) {
   return infos;
 }
 
+/// A generator of whole planets.
+Generator on_globe(Generator generator) {
+  generator.globe = true;
+  return generator;
+}
+
 const std::vector<Generator>& generators() {
   static const std::vector<Generator> table{
       make_generator<NoiseOptions>(
@@ -27,8 +34,63 @@ const std::vector<Generator>& generators() {
           "musgrave1989",
           {{"foothills",
             "rough where high, smooth where low (plates 3 and 11)",
-            {{"law", "heterogeneous"}, {"c_t", "0.5"}}}},
+            {{"law", "heterogeneous"}, {"c_t", "0.4"}, {"relief_m", "900"}}},
+           {"range",
+            "the same along a winding ridge (plate 4)",
+            {{"law", "heterogeneous"},
+             {"shape", "ridge"},
+             {"bend", "0.15"},
+             {"c_t", "0.5"},
+             {"relief_m", "1200"}}},
+           {"canyon",
+            "always positive noise weighted by the distance from a winding valley (plates 2, 9)",
+            {{"shape", "valley"},
+             {"bend", "0.15"},
+             {"c_t", "0.8"},
+             {"tilt", "0.3"},
+             {"wavelength_m", "5000"},
+             {"relief_m", "1500"}}},
+           {"dimension",
+            "fractal dimension 2 in the west to 3 in the east (plate 6)",
+            {{"H", "1"}, {"H_law", "linear"}, {"H_east", "0"}, {"relief_m", "400"}}},
+           {"filling",
+            "a plane in the west, noise that fills space in the east (plate 5)",
+            {{"H_law", "filling"}, {"octaves", "8"}, {"relief_m", "100"}}},
+           {"warped",
+            "places displaced by noise: local lacunarity (plates 1b, 7)",
+            {{"warp", "0.3"}}},
+           {"hybrid",
+            "multifractal: rougher on heights, by the product of the longer waves",
+            {{"law", "hybrid"}, {"H", "0.4"}, {"c_t", "0.7"}, {"relief_m", "800"}}},
+           {"ridged",
+            "multifractal of sharp crests",
+            {{"law", "ridged"}, {"H", "0.9"}, {"c_t", "1"}, {"relief_m", "900"}}}},
           generate_noise),
+      make_generator<FaultOptions>(
+          "faults", "random straight faults, one side up, the other down", "faulting1996",
+          {{"cliffs", "sides that part at once", {{"width_m", "0"}}}}, generate_faults),
+      on_globe(make_generator<GlobeOptions>(
+          "globe", "a planet cut along random great circles, in EPSG:4326", "faulting1996",
+          {{"small-circles",
+            "planes off the centre: no deep mirrors a mountain",
+            {{"off_centre", "0.9"}}}},
+          generate_globe)),
+      make_generator<CollageOptions>(
+          "collage", "humps and hollows pasted over each other", "faulting1996",
+          {{"discs", "flat discs", {{"shape", "disc"}, {"step_m", "120"}, {"count", "20000"}}},
+           {"rectangles",
+            "rectangles along the axes",
+            {{"shape", "rectangle"}, {"step_m", "120"}, {"count", "20000"}}},
+           {"cones", "cones", {{"shape", "cone"}}},
+           {"craters",
+            "smooth pits H F / (F + x^2 + y^2), many small and few large",
+            {{"shape", "crater"},
+             {"count", "1500"},
+             {"sign", "down"},
+             {"size_exponent", "2.5"},
+             {"radius_min_m", "150"},
+             {"radius_max_m", "2500"}}}},
+          generate_collage),
   };
   return table;
 }

@@ -30,13 +30,13 @@ enum class HLaw { constant, linear, filling };
 struct NoiseOptions {
   NoiseLaw law = NoiseLaw::fbm;
   NoiseShape shape = NoiseShape::plain;
-  double wavelength_m = 12000;
+  double wavelength_m = 10000;
   int octaves = 10;
   double lacunarity = 2;
-  double H = 0.8;
+  double H = 0.85;
   HLaw H_law = HLaw::constant;
   double H_east = 0;
-  double relief_m = 1500;
+  double relief_m = 900;
   double c_t = 0;
   double c_s = 1;
   double c_0 = 0;

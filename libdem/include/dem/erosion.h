@@ -1,0 +1,71 @@
+#pragma once
+// Erosion by running water and by falling rock [musgrave1989].
+
+#include <functional>
+#include <vector>
+
+#include "dem/dem.h"
+#include "dem/fields.h"
+#include "dem/run.h"
+
+namespace dem {
+
+/// Options of erode. K_c, K_d, K_s, c_t are the paper's symbols; heights and water are metres.
+struct ErosionOptions {
+  int steps = 500;
+  double rain_mm = 0;
+  double rain_mm_per_km = 1000;
+  int rain_every = 60;
+  double K_c = 5;
+  double K_d = 0.1;
+  double K_s = 0.3;
+  double talus_deg = 38;
+  double c_t = 0.5;
+  bool open_border = true;
+};
+std::vector<Field> fields(ErosionOptions& options);
+
+/// What a step left, for pictures on the way: heights with what the water carries above them.
+struct ErosionFrame {
+  int step = 0;
+  Raster<float> z;
+  Raster<float> water_m;
+};
+
+/// Called after steps `every`, 2 `every`, ... from the calling thread.
+struct ErosionFrames {
+  int every = 0;  ///< 0: never
+  std::function<void(const ErosionFrame&)> take = {};
+};
+
+struct Eroded {
+  Raster<float> z;
+  Raster<float> water_m;  ///< depth of the water that stands at the end
+  double before_m3 = 0;   ///< sum of height times cell area, in float64
+  double after_m3 = 0;    ///< the same at the end, settled sediment included
+  double carried_m3 = 0;  ///< sediment that left over the border: before = after + carried
+};
+
+/// Wears a terrain down: rain falls, flows to all lower neighbours, takes soil along and drops it;
+/// rock steeper than the talus angle slides.
+/// Method:   [musgrave1989] section 4. In each step a cell passes the water f sum(d_k g_k) on, d_k >=
+///           0 its surface above neighbour k, g_k = (shortest distance) / (distance of k), f at most
+///           1 / (4 sum g_k), so that water levels out and does not swing. It may carry K_c times
+///           that; it lifts K_s of what is missing, drops K_d of what is too much. Soil slides to
+///           each neighbour by c_t / 16 of what the slope exceeds the talus by. Departures: slopes,
+///           not differences; a step digs at most an eighth of the mean drop, and fills at most the
+///           water's depth and an eighth of the mean rise, or towers would grow; the printed signs
+///           of the deposit at v and of c_t are taken as misprints.
+/// Rain:     rain_mm, and rain_mm_per_km for each kilometre above the lowest cell (the paper's
+///           thousandth of the height), every rain_every steps.
+/// Needs:    known cells finite. Unknown cells are outside, behind a wall: nothing flows in or out,
+///           and they stay as they are. A step has no length in years.
+/// Gives:    heights with the suspended sediment settled where it was. With open_border, water and
+///           sediment that reach the rim leave, and the rim is not dug by water.
+/// Cost:     O(cells * steps), 48 bytes a cell. Every cell gathers from its neighbours' old state:
+///           no order, and the same bits for any number of threads.
+/// Throws:   std::invalid_argument, Cancelled.
+Eroded erode(const Dem& dem, const ErosionOptions& options = {}, const Run& run = {},
+             const ErosionFrames& frames = {});
+
+}  // namespace dem
