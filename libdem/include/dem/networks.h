@@ -7,16 +7,10 @@
 #include "dem/dem.h"
 #include "dem/fields.h"
 #include "dem/mcmd.h"
+#include "dem/river.h"
 #include "dem/run.h"
 
 namespace dem {
-
-/// A river, from its source to its mouth; each cell is a neighbour of the one before.
-struct River {
-  std::vector<Cell> path;  ///< the last cell is on the map's edge, or on the river it joins
-  int joins = -1;          ///< the number of that river; -1: it leaves the map
-  double mass = 1;         ///< how many sources feed it
-};
 
 /// A skeleton DEM: its known cells are those of ridges and rivers, and nothing else.
 struct Skeleton {
