@@ -14,7 +14,7 @@ LAYERS = {
     "values": ["canvas", "dem", "fields", "raster", "river", "run"],
     "helpers": ["flood", "gradient", "parallel", "paths", "random", "vectorised"],  # private: for any algorithm
     "algorithms": ["baseline", "draw", "evaluate", "holes", "mcmd", "networks", "noise", "outliers", "points",
-                   "raytrace", "riverland", "sample", "spline"],
+                   "raytrace", "riverland", "sample", "sketch", "spline"],
     "methods": ["generators", "gridding", "methods"],
     "io": ["baselines", "cells", "crs", "gdal_raster", "gdal_support", "geodesy", "heightmap", "hgt", "image", "io",
            "las", "lattices", "nodata", "ogr_layers", "oiio_support", "point_files", "point_reading", "point_text",
@@ -28,12 +28,14 @@ PARTS = {
     "networks": ["growth", "ridges", "rivers"],
     "raytrace": ["heightfield"],
     "riverland": ["riverland_heights", "riverland_parts", "riverland_relief", "riverland_rivers"],
+    "sketch": ["lsystem"],
     "spline": ["grid", "multigrid", "overshoot", "spline_parameters", "spline_sample", "spline_solver", "springs", "tensor"],
 }
 
 # The algorithms that call another: the spline's solver starts from MCMD's surface, and generators
 # end with it.
-CALLS = {("spline", "mcmd"), ("spline_parameters", "mcmd"), ("networks", "mcmd"), ("riverland_relief", "mcmd")}
+CALLS = {("spline", "mcmd"), ("spline_parameters", "mcmd"), ("networks", "mcmd"), ("riverland_relief", "mcmd"),
+         ("sketch", "mcmd"), ("lsystem", "mcmd")}
 
 # The layers that each layer may include. Algorithms do not include each other: they compose
 # through data.

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "dem/canvas.h"
 #include "dem/dem.h"
 #include "dem/fields.h"
 #include "dem/river.h"
@@ -93,5 +94,23 @@ Land read_land(const Raster<float>& drawing);
 
 /// An island that fills the map, with a ragged coast.
 Land make_island(Size size, std::uint64_t seed = 1, const Run& run = {});
+
+/// The land of generate_riverland.
+enum class LandShape { island, whole };
+
+/// Options of generate_riverland.
+struct GrownLandOptions {
+  LandShape land = LandShape::island;
+  RiverLandOptions riverland;
+};
+std::vector<Field> fields(GrownLandOptions& options);
+
+/// make_riverland on an island, or on the whole map.
+Raster<float> generate_riverland(const Canvas& canvas, const GrownLandOptions& options = {},
+                                 const Run& run = {});
+
+/// make_riverland on the land of a drawing, as read_land() sees it.
+Raster<float> generate_painted_land(const Canvas& canvas, const Raster<float>& drawing,
+                                    const RiverLandOptions& options = {}, const Run& run = {});
 
 }  // namespace dem

@@ -186,4 +186,24 @@ Land make_island(Size size, std::uint64_t seed, const Run& run) {
   return land;
 }
 
+std::vector<Field> fields(GrownLandOptions& o) {
+  std::vector<Field> list{
+      {"land", o.land, {"island", "whole"}, "an island with a ragged coast, or the whole map"}};
+  for (auto& field : fields(o.riverland)) list.push_back(std::move(field));
+  return list;
+}
+
+Raster<float> generate_riverland(const Canvas& canvas, const GrownLandOptions& o, const Run& run) {
+  check_map(canvas.size, canvas.spacing, 16, "land with rivers");
+  const Land land = o.land == LandShape::island
+                        ? make_island(canvas.size, o.riverland.seed, run.part(0, 0.1))
+                        : Land{Mask(canvas.size, 1), {}, {}};
+  return make_riverland(land, canvas.spacing, o.riverland, run.part(0.1, 1)).z;
+}
+
+Raster<float> generate_painted_land(const Canvas& canvas, const Raster<float>& drawing,
+                                    const RiverLandOptions& o, const Run& run) {
+  return make_riverland(read_land(drawing), canvas.spacing, o, run).z;
+}
+
 }  // namespace dem
