@@ -11,10 +11,10 @@ import tempfile
 
 # The layer of each file. A header dem/NAME.h and its source NAME.cpp share a name and a layer.
 LAYERS = {
-    "values": ["canvas", "dem", "fields", "raster", "run"],
+    "values": ["canvas", "dem", "fields", "raster", "river", "run"],
     "helpers": ["flood", "gradient", "parallel", "paths", "random", "vectorised"],  # private: for any algorithm
-    "algorithms": ["baseline", "draw", "erosion", "evaluate", "faults", "holes", "mcmd", "networks", "noise", "outliers",
-                   "points", "raytrace", "sample", "spline"],
+    "algorithms": ["baseline", "draw", "erosion", "evaluate", "faults", "holes", "mcmd", "networks", "noise",
+                   "outliers", "points", "raytrace", "riverland", "sample", "sketch", "spline"],
     "methods": ["generators", "gridding", "methods"],
     "io": ["baselines", "cells", "crs", "gdal_raster", "gdal_support", "geodesy", "heightmap", "hgt", "image", "io",
            "las", "lattices", "nodata", "ogr_layers", "oiio_support", "point_files", "point_reading", "point_text",
@@ -27,12 +27,17 @@ PARTS = {
     "mcmd": ["lattice", "midpoint", "pyramid", "row_kernels", "waves"],
     "networks": ["growth", "ridges", "rivers"],
     "raytrace": ["heightfield"],
-    "spline": ["grid", "multigrid", "overshoot", "roughness", "spline_parameters", "spline_sample", "spline_solver", "springs", "tensor"],
+    "spline": ["grid", "multigrid", "overshoot", "roughness", "spline_parameters", "spline_sample", "spline_solver",
+               "springs", "tensor"],
+    "riverland": ["riverland_heights", "riverland_parts", "riverland_relief", "riverland_rivers"],
+    "sketch": ["lsystem"],
 }
 
 # The algorithms that call another: the spline's solver starts from MCMD's surface, and generators
 # end with it.
-CALLS = {("spline", "mcmd"), ("spline_parameters", "mcmd"), ("roughness", "mcmd"), ("networks", "mcmd")}
+CALLS = {("spline", "mcmd"), ("roughness", "mcmd"), ("spline_parameters", "mcmd"), ("roughness", "mcmd"), ("networks", "mcmd")}
+CALLS = {("spline", "mcmd"), ("roughness", "mcmd"), ("spline_parameters", "mcmd"), ("networks", "mcmd"), ("riverland_relief", "mcmd"),
+         ("sketch", "mcmd"), ("lsystem", "mcmd")}
 
 # The layers that each layer may include. Algorithms do not include each other: they compose
 # through data.

@@ -9,7 +9,10 @@
 #include "dem/faults.h"
 #include "dem/generators.h"
 #include "dem/mcmd.h"
+#include "dem/networks.h"
 #include "dem/noise.h"
+#include "dem/riverland.h"
+#include "dem/sketch.h"
 #include "dem/spline.h"
 
 namespace dem {
@@ -91,6 +94,49 @@ const std::vector<Generator>& generators() {
              {"radius_min_m", "150"},
              {"radius_max_m", "2500"}}}},
           generate_collage),
+      make_generator<RidgesOptions>(
+          "ridges", "ridges and rivers that grow by chance, and terrain around them", "belhadj2005",
+          {{"mdi", "filled as there: MDI, then MD", {{"fill", "mdi"}}},
+           {"figure11",
+            "the bends and noise of [belhadj2007] figure 11 (a)",
+            {{"I", "1"},
+             {"I_bu", "6"},
+             {"I_ridge", "1"},
+             {"I_bu_ridge", "6"},
+             {"H", "0.49"},
+             {"rs", "0.5"}}}},
+          generate_ridges),
+      make_image_generator<DrawnSkeletonOptions>(
+          "skeleton", "terrain around drawn ridges and rivers", "belhadj2005",
+          "white: nothing; lighter greys: ridges; darker greys: rivers", {}, generate_skeleton),
+      make_generator<GrownLandOptions>(
+          "riverland", "rivers that grow into an island, and terrain that drains into them",
+          "teoh2009",
+          {{"cliffs", "plains by rivers and coasts, then cliffs", {{"profile", "cliffs"}}},
+           {"terraces", "slopes in steps", {{"profile", "terraces"}}}},
+          generate_riverland),
+      make_image_generator<RiverLandOptions>(
+          "painted_land", "rivers that grow into painted land, and terrain that drains into them",
+          "teoh2009", "black: sea; white: land; grey: land with rocky outcrops", {},
+          generate_painted_land),
+      make_image_generator<SketchOptions>(
+          "sketch", "a drawing of heights, filled by MCMD", "belhadj2007",
+          "white: unknown; greys: heights from black to white",
+          {{"bumped",
+            "figure 12 (a)",
+            {{"I", "-1.1"}, {"I_bu", "-20"}, {"H", "0.45"}, {"rt", "-0.2"}, {"rs", "1"}}},
+           {"ridged", "figure 12 (b)", {{"I", "1.1"}, {"I_bu", "4"}, {"H", "0.45"}, {"rs", "1.1"}}},
+           {"wall",
+            "figure 13, a rough coat of paint; to be smoothed by two median filters",
+            {{"salt", "0.01"},
+             {"I", "3"},
+             {"I_bu", "7.5"},
+             {"H", "0.5"},
+             {"rt", "0.1"},
+             {"rs", "1.3"}}}},
+          generate_sketch),
+      make_generator<LSystemOptions>("lsystem", "MCMD around the path of an L-system",
+                                     "belhadj2007", {}, generate_lsystem),
   };
   return table;
 }

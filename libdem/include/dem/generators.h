@@ -50,6 +50,27 @@ Generator make_generator(std::string name, std::string summary, std::string cita
           }};
 }
 
+/// The same for a function that starts from an image:
+/// `Raster<float>(const Canvas&, const Raster<float>& image, const Options&, const Run&)`.
+template <class Options, class Generate>
+Generator make_image_generator(std::string name, std::string summary, std::string citation,
+                               std::string image, std::vector<Preset> presets, Generate generate) {
+  Options defaults;
+  return {std::move(name),
+          std::move(summary),
+          std::move(citation),
+          describe(fields(defaults)),
+          std::move(presets),
+          std::move(image),
+          false,
+          [generate](const Canvas& canvas, const Raster<float>& drawing, const Settings& settings,
+                     const Run& run) {
+            Options options;
+            apply(settings, fields(options));
+            return on_canvas(canvas, generate(canvas, drawing, options, run));
+          }};
+}
+
 const std::vector<Generator>& generators();
 
 /// A generator with its preset's settings put before the caller's.

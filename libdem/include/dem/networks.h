@@ -4,19 +4,14 @@
 #include <cstdint>
 #include <vector>
 
+#include "dem/canvas.h"
 #include "dem/dem.h"
 #include "dem/fields.h"
 #include "dem/mcmd.h"
+#include "dem/river.h"
 #include "dem/run.h"
 
 namespace dem {
-
-/// A river, from its source to its mouth; each cell is a neighbour of the one before.
-struct River {
-  std::vector<Cell> path;  ///< the last cell is on the map's edge, or on the river it joins
-  int joins = -1;          ///< the number of that river; -1: it leaves the map
-  double mass = 1;         ///< how many sources feed it
-};
 
 /// A skeleton DEM: its known cells are those of ridges and rivers, and nothing else.
 struct Skeleton {
@@ -116,5 +111,27 @@ std::vector<Field> fields(SkeletonFillOptions& options);
 /// Throws:   std::invalid_argument, Cancelled.
 Raster<float> fill_skeleton(const Skeleton& skeleton, const SkeletonFillOptions& options = {},
                             const Run& run = {});
+
+/// Options of generate_ridges. The seed of the network is that of the fill, too.
+struct RidgesOptions {
+  NetworkOptions network;
+  SkeletonFillOptions fill;
+};
+std::vector<Field> fields(RidgesOptions& options);
+
+/// A terrain around ridges and rivers that grow by chance: fill_skeleton of grow_skeleton.
+Raster<float> generate_ridges(const Canvas& canvas, const RidgesOptions& options = {},
+                              const Run& run = {});
+
+/// Options of generate_skeleton.
+struct DrawnSkeletonOptions {
+  SketchLinesOptions lines;
+  SkeletonFillOptions fill;
+};
+std::vector<Field> fields(DrawnSkeletonOptions& options);
+
+/// A terrain around drawn ridges and rivers: fill_skeleton of read_skeleton.
+Raster<float> generate_skeleton(const Canvas& canvas, const Raster<float>& drawing,
+                                const DrawnSkeletonOptions& options = {}, const Run& run = {});
 
 }  // namespace dem

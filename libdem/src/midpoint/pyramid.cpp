@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "lattice.h"
@@ -78,8 +79,38 @@ struct LevelAxis {
 /// children (weight > 0, z their weighted sum), or neither (weight = 0, z = 0).
 struct Level {
   LevelAxis x, y;
-  Raster<float> z, weight;  // empty at level 0, which is the DEM
+  Raster<float> z, weight;                           // empty at level 0, which is the DEM
+  Raster<CellKind> kinds{};                          // empty at level 0, and when all are plain
+  std::vector<std::vector<std::int32_t>> special{};  // of each row, the nodes that are not plain
 };
+
+/// Of each row, the nodes that are not plain.
+std::vector<std::vector<std::int32_t>> special_nodes(const Raster<CellKind>& kinds) {
+  std::vector<std::vector<std::int32_t>> rows(std::size_t(kinds.rows()));
+  for (int y = 0; y < kinds.rows(); ++y) {
+    const auto row = kinds.row(y);
+    for (auto at = row.begin();; ++at) {
+      at = std::find_if(at, row.end(), [](CellKind kind) { return kind != CellKind::plain; });
+      if (at == row.end()) break;
+      rows[std::size_t(y)].push_back(std::int32_t(at - row.begin()));
+    }
+  }
+  return rows;
+}
+
+/// The kinds of the next level's nodes, and which are special.
+void coarsen_kinds(const Level& level, const Raster<CellKind>& kinds, Level& next) {
+  next.kinds = Raster<CellKind>({next.x.n, next.y.n});
+  next.special.resize(std::size_t(next.y.n));
+  for (int next_y = 0; next_y < next.y.n; ++next_y) {
+    const int y = level.y.from_next(next_y, next.y.last());
+    for (std::int32_t x : level.special[std::size_t(y)]) {
+      if (level.x.young(x)) continue;
+      next.kinds(level.x.next(x), next_y) = kinds(x, y);
+      next.special[std::size_t(next_y)].push_back(level.x.next(x));
+    }
+  }
+}
 
 // ---- Weights and kernels
 
@@ -105,6 +136,9 @@ class Rules {
       : bend_(pull.bend), exponent_(pull.weight_exponent), diagonal_(diagonal) {}
   /// Top-down: plain means over the sides, and over the corners.
   Rules(const Bend& bend, double diagonal) : bend_(bend), mean_(true), diagonal_(diagonal) {}
+
+  bool bends_as_plain(CellKind kind) const { return bend_[std::size_t(kind)] == bend_[0]; }
+  bool bends_alike() const { return bend_[1] == bend_[0] && bend_[2] == bend_[0]; }
 
   const Rule& of(Sides sides) {
     for (const Rule& rule : rules_)
@@ -189,10 +223,15 @@ class Pyramid {
     Rules up, down;
     std::array<Slot, 4> slots;
     std::vector<std::int32_t> young;  // all ones in the young columns, else 0
-    std::vector<float> sum, weight, masked_up, masked_here, masked_down;
+    std::vector<float> sum, weight;
+    std::vector<int> summed;  // by kinds: in which sum_heights()
+    int sums = 0;
   };
 
   bool diamond() const { return fill_.subdivision == Subdivision::diamond_square; }
+  const Raster<CellKind>& kinds_of(const Level& level) const {
+    return finest(level) ? fill_.kinds : level.kinds;
+  }
   bool finest(const Level& level) const { return &level == levels_.data(); }
   static const Level& coarser(const Level& level) { return *(&level + 1); }
   Desk desk(const Level& level) const;
@@ -207,6 +246,9 @@ class Pyramid {
   Sides sides_at(const Level& level, int x, int y, bool ends_only) const;
   Sides inner_sides(const Level& level, int y, bool ends_only) const;
   void sum_heights(Desk& desk, Rules& rules, int y, const Rows& z, Take take, bool ends_only) const;
+  void sum_kinds(Desk& desk, Rules& rules, int y, const Rows& z, Take take, bool ends_only) const;
+  float sum_by_kinds(const Level& level, const Rule& rule, int x, int y, const float* const rows[3],
+                     Take take) const;
   void sum_weights(Desk& desk, int y, const Rows& known, Take take) const;
 
   void finish_young(Level& level, const Run& run);
@@ -214,7 +256,8 @@ class Pyramid {
   void coarsen_row(Desk& desk, Level& next, int next_y) const;
 
   float mean_of_known_roots() const;
-  float displacement(const Level& level, int x, int y, double distance) const;
+  double noise_scale(const Level& level) const;
+  float displacement(const Level& level, int x, int y, double scale, double distance) const;
   void sum_ascendants(Desk& desk, int y, const Rows& z, bool centres) const;
   void refine(Level& level, const Run& run);
   void refine_row(Desk& desk, Level& level, int y, bool centres) const;
@@ -236,6 +279,11 @@ Pyramid::Pyramid(const Midpoint& fill) : fill_(fill), zeros_(std::size_t(fill.de
     level = {level.x.coarser(), level.y.coarser(), {}, {}};
     levels_.push_back(level);
   }
+  if (!fill.kinds.empty()) {
+    levels_[0].special = special_nodes(fill.kinds);
+    for (std::size_t k = 1; k < levels_.size(); ++k)
+      coarsen_kinds(levels_[k - 1], kinds_of(levels_[k - 1]), levels_[k]);
+  }
   for (std::size_t k = 1; k < levels_.size(); ++k) {
     const Size size{levels_[k].x.n, levels_[k].y.n};
     levels_[k].z = Raster<float>::unset(size);
@@ -248,7 +296,7 @@ Pyramid::Desk Pyramid::desk(const Level& level) const {
   const Slot slot{no_row, row, row};
   std::vector<std::int32_t> young(row.size());
   for (int x = 1; x < level.x.last(); x += 2) young[std::size_t(x)] = -1;
-  const std::vector<float> masked = fill_.kinds.empty() ? std::vector<float>() : row;
+  const std::vector<int> summed(fill_.kinds.empty() ? 0 : row.size(), 0);
   return {level,
           Rules(pull_, fill_.diagonal()),
           Rules(bend_, fill_.diagonal()),
@@ -256,9 +304,7 @@ Pyramid::Desk Pyramid::desk(const Level& level) const {
           std::move(young),
           row,
           row,
-          masked,
-          masked,
-          masked};
+          summed};
 }
 
 /// Runs work(desk, first, last) over blocks of rows, in parallel, each with a desk of its own.
@@ -343,31 +389,52 @@ void Pyramid::sum_heights(Desk& desk, Rules& rules, int y, const Rows& z, Take t
   const Level& level = desk.level;
   const int n = level.x.n;
   float* sum = desk.sum.data();
-  const auto of_kind = [&](auto add, const Rows& rows, std::size_t kind) {
-    if (n > 3)
-      (add ? add_neighbours : sum_neighbours)(
-          rows, rules.of(inner_sides(level, y, ends_only)).bent[kind], take, n, sum);
-    for_outer_columns(n, [&](int x) {
-      sum_one<add>(rows, rules.of(sides_at(level, x, y, ends_only)).bent[kind], take, n, x, sum);
-    });
-  };
-  if (fill_.kinds.empty()) return of_kind(std::false_type(), z, 0);
+  if (n > 3) sum_neighbours(z, rules.of(inner_sides(level, y, ends_only)).bent[0], take, n, sum);
+  for_outer_columns(n, [&](int x) {
+    sum_one<false>(z, rules.of(sides_at(level, x, y, ends_only)).bent[0], take, n, x, sum);
+  });
+  if (!level.special.empty()) sum_kinds(desk, rules, y, z, take, ends_only);
+}
 
-  // One sum for each kind of neighbour, the others masked out.
-  for (std::size_t kind = 0; kind < 3; ++kind) {
-    const auto masked = [&](const float* row, int at, std::vector<float>& to) {
-      if (row == zeros_.data()) return row;
-      const auto kinds = fill_.kinds.row(level.y.cell(at));
-      for (int x = 0; x < n; ++x) {
-        const bool same = std::size_t(kinds[std::size_t(level.x.cell(x))]) == kind;
-        to[std::size_t(x)] = same ? row[x] : 0.0f;
+/// Of desk.sum, the columns beside nodes whose kind bends otherwise than the plain.
+void Pyramid::sum_kinds(Desk& desk, Rules& rules, int y, const Rows& z, Take take,
+                        bool ends_only) const {
+  if (rules.bends_alike()) return;
+  const Level& level = desk.level;
+  const int n = level.x.n;
+  const float* rows[] = {z.up, z.here, z.down};
+  ++desk.sums;
+  for (int at = 0; at < 3; ++at) {
+    if (rows[at] == zeros_.data()) continue;
+    const auto kinds = kinds_of(level).row(y - 1 + at);
+    for (std::int32_t special : level.special[std::size_t(y - 1 + at)]) {
+      if (rules.bends_as_plain(kinds[std::size_t(special)])) continue;
+      for (int x = std::max(0, special - 1); x <= std::min(n - 1, special + 1); ++x) {
+        if (std::exchange(desk.summed[std::size_t(x)], desk.sums) == desk.sums) continue;
+        const bool inner = n > 3 && x >= 1 && x < n - 2;
+        const Rule& rule =
+            rules.of(inner ? inner_sides(level, y, ends_only) : sides_at(level, x, y, ends_only));
+        desk.sum[std::size_t(x)] = sum_by_kinds(level, rule, x, y, rows, take);
       }
-      return static_cast<const float*>(to.data());
-    };
-    const Rows rows{masked(z.up, y - 1, desk.masked_up), masked(z.here, y, desk.masked_here),
-                    masked(z.down, y + 1, desk.masked_down)};
-    kind == 0 ? of_kind(std::false_type(), rows, kind) : of_kind(std::true_type(), rows, kind);
+    }
   }
+}
+
+/// The neighbours of one node, each with the bend of its kind.
+float Pyramid::sum_by_kinds(const Level& level, const Rule& rule, int x, int y,
+                            const float* const rows[3], Take take) const {
+  float near[3][3][3] = {};  // kind, row, column
+  for (int r = 0; r < 3; ++r) {
+    if (rows[r] == zeros_.data()) continue;
+    const CellKind* kinds = kinds_of(level).row(y - 1 + r).data() + (x - 1);
+    const float* z = rows[r] + (x - 1);
+    for (int c = x > 0 ? 0 : 1; c < (x < level.x.last() ? 3 : 2); ++c)
+      near[std::size_t(kinds[c])][r][c] = z[c];
+  }
+  float sum[3] = {0, 0, 0};
+  for (std::size_t kind = 0; kind < 3; ++kind)
+    sum_one<true>({near[kind][0], near[kind][1], near[kind][2]}, rule.bent[kind], take, 3, 1, sum);
+  return sum[1];
 }
 
 /// desk.weight = the weights of the known neighbours in row y.
@@ -515,10 +582,14 @@ float Pyramid::mean_of_known_roots() const {
   return n ? float(sum / n) : 0;
 }
 
-/// Equation 1 for node (x, y) of a level, times the mean distance of its ascendants.
-float Pyramid::displacement(const Level& level, int x, int y, double distance) const {
+/// Equation 1 at the nodes of a level, without its random numbers.
+double Pyramid::noise_scale(const Level& level) const {
   const int coarsest = int(levels_.size()) - 2, r = coarsest - int(&level - levels_.data());
-  const double scale = noise_.rs * std::exp2(-2 * noise_.H * r);
+  return noise_.rs * std::exp2(-2 * noise_.H * r);
+}
+
+/// Equation 1 for node (x, y) of a level, times the mean distance of its ascendants.
+float Pyramid::displacement(const Level& level, int x, int y, double scale, double distance) const {
   const double su_rand =
       signed_uniform(random_bits(noise_.seed, stream_down, level.x.cell(x), level.y.cell(y)));
   return float((su_rand + noise_.rt) * scale * distance);
@@ -530,12 +601,21 @@ void Pyramid::sum_ascendants(Desk& desk, int y, const Rows& z, bool centres) con
   sum_heights(desk, desk.down, y, z, centres ? Take::corners : Take::sides, ends_only);
   if (noise_.rs == 0) return;
   const Level& level = desk.level;
-  for (int x = 0; x < level.x.n; ++x) {
-    if (level.x.young(x) != (centres || !level.y.young(y))) continue;
-    const Rule& rule = desk.down.of(sides_at(level, x, y, ends_only));
-    desk.sum[std::size_t(x)] +=
-        displacement(level, x, y, centres ? rule.corner_distance : rule.side_distance);
-  }
+  const double scale = noise_scale(level);
+  const auto distance = [&](Sides sides) {
+    const Rule& rule = desk.down.of(sides);
+    return centres ? rule.corner_distance : rule.side_distance;
+  };
+  const int n = level.x.n;
+  const bool young = centres || !level.y.young(y);  // which columns are computed
+  const double inner = n > 3 ? distance(inner_sides(level, y, ends_only)) : 0;
+  for (int x = young ? 1 : 2; x < n - 2; x += 2)
+    desk.sum[std::size_t(x)] += displacement(level, x, y, scale, inner);
+  for_outer_columns(n, [&](int x) {
+    if (level.x.young(x) == young)
+      desk.sum[std::size_t(x)] +=
+          displacement(level, x, y, scale, distance(sides_at(level, x, y, ends_only)));
+  });
 }
 
 /// Completes a coarser level from the next one: old nodes, centres, edges of old and of young rows,

@@ -403,4 +403,30 @@ Raster<float> fill_skeleton(const Skeleton& s, const SkeletonFillOptions& o, con
   return fill_mcmd(s.dem, mcmd_options(o), run, s.kinds);
 }
 
+std::vector<Field> fields(RidgesOptions& o) {
+  std::vector<Field> list = fields(o.network);
+  for (auto& field : fields(o.fill))
+    if (field.name() != "seed") list.push_back(std::move(field));
+  return list;
+}
+
+Raster<float> generate_ridges(const Canvas& canvas, const RidgesOptions& o, const Run& run) {
+  SkeletonFillOptions fill = o.fill;
+  fill.seed = o.network.seed;
+  return fill_skeleton(grow_skeleton(canvas.size, canvas.spacing, o.network, run.part(0, 0.5)),
+                       fill, run.part(0.5, 1));
+}
+
+std::vector<Field> fields(DrawnSkeletonOptions& o) {
+  std::vector<Field> list = fields(o.lines);
+  for (auto& field : fields(o.fill)) list.push_back(std::move(field));
+  return list;
+}
+
+Raster<float> generate_skeleton(const Canvas& canvas, const Raster<float>& drawing,
+                                const DrawnSkeletonOptions& o, const Run& run) {
+  return fill_skeleton(read_skeleton(drawing, canvas.spacing, o.lines, run.part(0, 0.5)), o.fill,
+                       run.part(0.5, 1));
+}
+
 }  // namespace dem
