@@ -145,6 +145,7 @@ int run(int argc, char** argv) {
   add_curve(app, shell);
   add_reproduce(app, shell);
   add_generate(app, shell);
+  add_render(app, shell);
   add_methods(app, shell);
   for (auto* verb : app.get_subcommands({})) shell.add_options(*verb);
 
