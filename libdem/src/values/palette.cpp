@@ -31,7 +31,7 @@ constexpr Stop kDusk[] = {{0.00, {38, 50, 92}},
                           {0.75, {190, 168, 124}},
                           {1.00, {250, 228, 148}}};
 constexpr Stop kPaper[] = {{0.00, {222, 220, 214}}, {1.00, {250, 249, 246}}};
-constexpr Stop kSea[] = {{0.00, {150, 190, 208}}, {0.15, {112, 160, 190}}, {1.00, {30, 62, 104}}};
+constexpr Stop kSea[] = {{0.00, {128, 174, 198}}, {0.15, {98, 148, 182}}, {1.00, {30, 62, 104}}};
 
 std::span<const Stop> stops(Palette palette) {
   switch (palette) {
