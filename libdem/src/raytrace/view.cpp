@@ -253,7 +253,7 @@ class Scene {
 
   /// The cut sides: four upright walls from the plain up to the ground at the rim.
   void meet_sides(const Ray& ray, Sight& nearest) const {
-    const auto [o, d, end] = ray;
+    const Vec3 o = ray.origin, d = ray.direction;
     const auto wall = [&](double t, Vec3 normal) {
       if (!(t > 0 && t < nearest.t)) return;
       Vec3 p = o + t * d;
