@@ -11,7 +11,7 @@ import tempfile
 
 # The layer of each file. A header dem/NAME.h and its source NAME.cpp share a name and a layer.
 LAYERS = {
-    "values": ["canvas", "dem", "fields", "raster", "river", "run"],
+    "values": ["canvas", "dem", "fields", "palette", "raster", "river", "run"],
     "helpers": ["flood", "gradient", "parallel", "paths", "random", "vectorised"],  # private: for any algorithm
     "algorithms": ["baseline", "draw", "erosion", "evaluate", "faults", "holes", "mcmd", "networks", "noise",
                    "outliers", "points", "raytrace", "riverland", "sample", "sketch", "spline"],
@@ -26,7 +26,7 @@ PARTS = {
     "holes": ["hole_filter", "hole_scan", "hole_windows"],
     "mcmd": ["lattice", "midpoint", "pyramid", "row_kernels", "waves"],
     "networks": ["growth", "ridges", "rivers"],
-    "raytrace": ["heightfield"],
+    "raytrace": ["heightfield", "sky", "view"],
     "spline": ["grid", "multigrid", "overshoot", "roughness", "spline_parameters", "spline_sample", "spline_solver",
                "springs", "tensor"],
     "riverland": ["riverland_heights", "riverland_parts", "riverland_relief", "riverland_rivers"],

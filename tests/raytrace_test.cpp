@@ -389,6 +389,177 @@ TEST(Heightfield, RefusesWhatIsNoSurface) {
   EXPECT_NO_THROW(Heightfield field(dem));
 }
 
+ViewOptions small_picture(std::optional<Vec3> camera = {}, std::optional<Vec3> target = {}) {
+  ViewOptions o;
+  o.width = 64, o.height = 48;
+  o.camera = camera, o.target = target;
+  return o;
+}
+
+/// A map of a view: the camera far over the middle of the DEM, north up.
+ViewOptions from_above(const Dem& dem) {
+  const double east = (dem.z.cols() - 1) * dem.spacing.dx_m / 2;
+  const double south = (dem.z.rows() - 1) * dem.spacing.dy_m / 2;
+  ViewOptions o = small_picture(Vec3{east, -south, 10 * east}, Vec3{east, -south, 0});
+  o.width = o.height = 64, o.fov_deg = 11, o.haze = 0;
+  return o;
+}
+
+int brightness(const Rgb& c) { return int(c[0]) + int(c[1]) + int(c[2]); }
+
+TEST(RenderView, ThreadsChangeNothing) {
+  Dem dem = rough({70, 50}, 200, 20, {30, 40});
+  dem.known(20, 20) = 0;
+  EXPECT_EQ(render_view(dem, small_picture(), {.threads = 1, .progress = {}}),
+            render_view(dem, small_picture(), {.threads = 4, .progress = {}}));
+}
+
+TEST(RenderView, TheThreeQuarterViewHasTheWholeTerrainInThePicture) {
+  for (const Size size : {Size{50, 50}, {200, 20}, {9, 120}})
+    for (const double heading : {0.0, 25.0, 200.0})
+      for (const double tilt : {5.0, 32.0, 90.0}) {
+        const Dem dem = rough(size, 300, 21, {30, 40});
+        ViewOptions o = small_picture();
+        o.heading_deg = heading, o.tilt_deg = tilt;
+        const View view = make_view(dem, o);
+        const auto& [position, forward, right, up] = view.camera;
+        double nearest = 0;
+        for (const double x : {0.0, (size.cols - 1) * 30.0})
+          for (const double y : {0.0, -(size.rows - 1) * 40.0})
+            for (const double z : {view.ground.low(), view.ground.high()}) {
+              const Vec3 p = Vec3{x, y, z} - position;
+              const double depth = dot(p, forward);
+              ASSERT_GT(depth, 0);
+              const double at_x = std::abs(dot(p, right) / dot(right, right) / depth);
+              const double at_y = std::abs(dot(p, up) / dot(up, up) / depth);
+              EXPECT_LE(std::max(at_x, at_y), 1);
+              nearest = std::max({nearest, at_x, at_y});
+            }
+        EXPECT_GT(nearest, 0.6);  // and it fills it
+      }
+}
+
+TEST(RenderView, NorthIsUpAndEastIsRightFromAbove) {
+  Dem dem =
+      surface({41, 41}, {10, 10}, [](double x, double y) { return x > 50 && y > 50 ? 5 : -5; });
+  ViewOptions o = from_above(dem);
+  o.sea = true, o.shadows = false;
+  const auto picture = render_view(dem, o);
+  const auto is_water = [&](int col, int row) {
+    return picture(col, row)[2] > picture(col, row)[0];
+  };
+  EXPECT_FALSE(is_water(50, 12));
+  EXPECT_TRUE(is_water(12, 12));
+  EXPECT_TRUE(is_water(50, 50));
+  EXPECT_TRUE(is_water(12, 50));
+}
+
+TEST(RenderView, TheCameraLooksAtItsTarget) {
+  const Dem dem = rough({30, 30}, 10, 22, {10, 10});
+  const Vec3 target{120, -80, 7};
+  const View view = make_view(dem, small_picture(Vec3{-100, -400, 300}, target));
+  const Ray ray = view.camera.ray(0, 0);
+  EXPECT_NEAR(length(at(ray, length(target - ray.origin)) - target), 0, 1e-9);
+  EXPECT_EQ(view.exaggeration, 1);
+  EXPECT_NEAR(length(view.camera.right), std::tan(16 * 3.14159265358979 / 180), 1e-12);
+}
+
+TEST(RenderView, ARidgeThrowsAShadowAwayFromTheSun) {
+  const Dem dem =
+      surface({81, 81}, {10, 10}, [](double x, double) { return x > -10 && x < 10 ? 100 : 0; });
+  ViewOptions o = from_above(dem);
+  o.azimuth_deg = 270, o.altitude_deg = 30;  // the shadow is 173 m long: 14 pixels
+  const auto lit = render_view(dem, o);
+  o.shadows = false;
+  const auto plain = render_view(dem, o);
+  EXPECT_LT(brightness(lit(40, 32)), brightness(plain(40, 32)) - 60);
+  EXPECT_EQ(lit(20, 32), plain(20, 32));
+  EXPECT_EQ(lit(52, 32), plain(52, 32));
+}
+
+TEST(RenderView, AboveTheHorizonIsSkyAndHazeHidesTheGround) {
+  const Dem dem = rough({30, 30}, 10, 23, {10, 10});
+  ViewOptions up = small_picture(Vec3{150, -150, 100}, Vec3{150, 100, 300});
+  const auto sky = render_view(dem, up);
+  for (const auto& c : sky.cells()) EXPECT_GT(c[2], c[0]);
+  ViewOptions clear = small_picture(Vec3{150, -290, 40}, Vec3{150, 0, 0});
+  ViewOptions thick = clear;
+  clear.haze = 0, thick.haze = 100;
+  const auto ground = render_view(dem, clear), fog = render_view(dem, thick);
+  EXPECT_GT(brightness(fog(32, 24)), brightness(ground(32, 24)));
+  EXPECT_GT(fog(32, 24)[2], fog(32, 24)[0]);
+}
+
+TEST(RenderView, HolesAreDark) {
+  Dem dem = surface({41, 41}, {10, 10}, [](double, double) { return 50; });
+  for (int row = 10; row < 30; ++row)
+    for (int col = 10; col < 30; ++col) dem.known(col, row) = 0;
+  const auto picture = render_view(dem, from_above(dem));
+  EXPECT_LT(brightness(picture(32, 32)), brightness(picture(8, 32)) / 2);
+  dem.known = Mask(dem.size(), 0);
+  EXPECT_NO_THROW(render_view(dem, small_picture()));
+}
+
+TEST(RenderView, MoreRaysForAPixelSoftenEdgesAndKeepTheMean) {
+  const Dem dem =
+      surface({41, 41}, {10, 10}, [](double x, double y) { return x + 2 * y > 0 ? 9 : -9; });
+  ViewOptions o = from_above(dem);
+  o.sea = true, o.shadows = false;
+  const auto tones = [&](int samples) {
+    o.samples = samples;
+    std::vector<Rgb> all;
+    long sum = 0;
+    const auto picture = render_view(dem, o);
+    for (const auto& c : picture.cells()) all.push_back(c), sum += brightness(c);
+    std::ranges::sort(all);
+    return std::pair{int(std::unique(all.begin(), all.end()) - all.begin()), sum / 4096};
+  };
+  const auto [few, mean] = tones(1);
+  const auto [many, same_mean] = tones(16);
+  EXPECT_GT(many, few);
+  EXPECT_NEAR(double(mean), double(same_mean), 6);
+}
+
+TEST(RenderView, ExaggerationIsChosenByTheRelief) {
+  const auto chosen = [](double high) {
+    const Dem dem =
+        surface({101, 51}, {10, 10}, [&](double x, double) { return x > 0 ? high : 0; });
+    return make_view(dem, small_picture()).exaggeration;
+  };
+  EXPECT_EQ(chosen(0), 1);
+  EXPECT_EQ(chosen(500), 1);
+  EXPECT_EQ(chosen(20), 4);  // 1010 m / 12 / 20 m = 4.2
+}
+
+TEST(RenderView, StopsWhenAskedTo) {
+  const Dem dem = rough({30, 30}, 10, 24);
+  EXPECT_THROW(render_view(dem, small_picture(),
+                           {.threads = 1, .progress = [](double p, auto) { return p < 0.5; }}),
+               Cancelled);
+}
+
+TEST(RenderView, RefusesACameraThatSeesNothing) {
+  using ::testing::HasSubstr;
+  using ::testing::ThrowsMessage;
+  const Dem dem = surface({11, 11}, {10, 10}, [](double, double) { return 400; });
+  const auto view = [&](std::optional<Vec3> camera, std::optional<Vec3> target) {
+    return [=, &dem] { make_view(dem, small_picture(camera, target)); };
+  };
+  const auto says = [](const char* words) {
+    return ThrowsMessage<std::invalid_argument>(HasSubstr(words));
+  };
+  EXPECT_THAT(view(Vec3{50, -50, 100}, {}),
+              says("camera is 300.0 m under the ground; must be higher than 400.0 m here"));
+  EXPECT_THAT(view(Vec3{-500, -50, -100}, {}), says("camera is at -100.0 m, under all ground"));
+  EXPECT_THAT(view(Vec3{50, -50, 500}, Vec3{50, -50, 500}), says("camera stands on its target"));
+  EXPECT_THAT(view({}, Vec3{50, -50, 500}), says("target without a camera"));
+  EXPECT_THAT(view(Vec3{50, NAN, 500}, {}), says("must be finite"));
+  EXPECT_NO_THROW(view(Vec3{50, -50, 401}, {})());
+  ViewOptions wide = small_picture();
+  wide.fov_deg = 180;
+  EXPECT_THAT([&] { make_view(dem, wide); }, says("fov = 180; must be"));
+}
+
 #ifdef DEM_EMBREE
 /// The same triangles in Embree.
 class Embree {

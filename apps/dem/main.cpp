@@ -146,6 +146,7 @@ int run(int argc, char** argv) {
   add_reproduce(app, shell);
   add_generate(app, shell);
   add_erode(app, shell);
+  add_render(app, shell);
   add_methods(app, shell);
   for (auto* verb : app.get_subcommands({})) shell.add_options(*verb);
 

@@ -14,6 +14,7 @@ void add_curve(CLI::App& app, Shell& shell);
 void add_reproduce(CLI::App& app, Shell& shell);
 void add_generate(CLI::App& app, Shell& shell);
 void add_erode(CLI::App& app, Shell& shell);
+void add_render(CLI::App& app, Shell& shell);
 void add_methods(CLI::App& app, Shell& shell);
 
 }  // namespace dem::app

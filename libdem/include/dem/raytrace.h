@@ -9,6 +9,9 @@
 #include <vector>
 
 #include "dem/dem.h"
+#include "dem/fields.h"
+#include "dem/palette.h"
+#include "dem/run.h"
 
 namespace dem {
 
@@ -88,5 +91,56 @@ class Heightfield {
   bool has_holes_ = false;
   double low_ = 0, high_ = 0;
 };
+
+/// What a view shows and from where. Without a camera the whole terrain is seen from outside and
+/// above, as a block cut out of the ground: a three-quarter view.
+struct ViewOptions {
+  int width = 1600, height = 900;  ///< pixels
+  int samples = 4;                 ///< rays for a pixel
+  double azimuth_deg = 305;        ///< where the sun stands, clockwise from north
+  double altitude_deg = 35;
+  double exaggeration = 0;  ///< 0: 1 with a camera, else chosen so that the relief shows
+  double heading_deg = 25;  ///< where the three-quarter view looks, clockwise from north
+  double tilt_deg = 32;     ///< and how far down
+  double fov_deg = 32;      ///< angle across the picture's width
+  double haze = 1;          ///< 0: clear air; 1: what is a terrain's length away fades, a little
+                            ///< in a three-quarter view, most of it for a camera of its own
+  bool shadows = true;
+  Palette palette = Palette::atlas;
+  bool sea = false;  ///< heights at or below 0 are water
+
+  /// Where the camera stands and what it looks at, before heights are exaggerated. Without a
+  /// target it looks at the middle of the terrain.
+  std::optional<Vec3> camera = {}, target = {};
+};
+std::vector<Field> fields(ViewOptions& options);
+
+/// A pinhole camera; x and y of a picture run from -1 to 1, to the right and upwards.
+struct Camera {
+  Vec3 position, forward;  ///< forward has length 1
+  Vec3 right, up;          ///< to the picture's rim
+
+  Ray ray(double x, double y) const { return {position, forward + x * right + y * up}; }
+};
+
+/// The surface and the camera of a view.
+struct View {
+  double exaggeration = 1;
+  Heightfield ground;
+  Camera camera;
+};
+
+/// Throws std::invalid_argument, also when the camera stands under the ground.
+View make_view(const Dem& dem, const ViewOptions& options = {});
+
+/// A perspective view.
+/// Method: grid tracing [musgrave1989]. The ground has the palette's colours and normals that turn
+///         evenly from cell to cell; it is lit by the sun, whose shadows are traced, and by the part
+///         of the sky that each cell sees over its horizon in 16 directions. Air takes colour away
+///         exponentially with the way through it. The terrain stands on a plain; its cut sides are
+///         drawn. Sub-pixel positions are hashes of the pixel: no number of threads changes a bit.
+/// Needs:  2 x 2 cells. Unknown cells are holes through which the inside of the block is seen.
+/// Throws: std::invalid_argument, Cancelled.
+Raster<Rgb> render_view(const Dem& dem, const ViewOptions& options = {}, const Run& run = {});
 
 }  // namespace dem

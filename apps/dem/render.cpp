@@ -1,0 +1,232 @@
+// dem render: pictures of a DEM.
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <map>
+
+#include "dem/draw.h"
+#include "dem/image.h"
+#include "dem/raytrace.h"
+#include "verbs.h"
+
+namespace dem::app {
+namespace {
+
+struct Options {
+  std::string in, out, style = "relief", size, camera, target;
+  std::map<std::string, std::string> given;  // what stands for fields of the style's options
+  ReadOptions read;
+};
+
+/// The fields that `style` draws with; width and height are --size.
+std::vector<std::string> field_names(const std::string& style) {
+  HillshadeOptions hillshade;
+  ReliefOptions relief;
+  ViewOptions view;
+  std::vector<std::string> names;
+  for (const auto& f : style == "hillshade" ? fields(hillshade)
+                       : style == "relief"  ? fields(relief)
+                                            : fields(view))
+    if (f.name() != "width" && f.name() != "height") names.push_back(f.name());
+  return names;
+}
+
+Settings settings(const Options& o) {
+  const auto names = field_names(o.style);
+  Settings settings;
+  for (const auto& [name, text] : o.given) {
+    if (std::ranges::count(names, name) == 0)
+      throw std::invalid_argument(fmt::format("{}: style {} has no such setting; it has {}", name,
+                                              o.style, fmt::join(names, ", ")));
+    settings.emplace_back(name, text);
+  }
+  if (o.style != "view")
+    for (const auto& [name, text] :
+         {std::pair{"size", o.size}, {"camera", o.camera}, {"target", o.target}})
+      if (!text.empty())
+        throw std::invalid_argument(
+            fmt::format("{} is for --style view; {} has one pixel for "
+                        "each cell",
+                        name, o.style));
+  return settings;
+}
+
+/// "1600x900".
+Settings picture_size(const std::string& text) {
+  if (text.empty()) return {};
+  const auto x = text.find('x');
+  if (x == std::string::npos)
+    throw std::invalid_argument("size = " + text + "; must be WIDTHxHEIGHT, e.g. 1600x900");
+  return {{"width", text.substr(0, x)}, {"height", text.substr(x + 1)}};
+}
+
+/// "X,Y,Z" in the coordinates of the DEM and metres; "+200" for Z is 200 m above the ground there.
+Vec3 point(const std::string& option, const std::string& text, const Dem& dem) {
+  const auto must_be =
+      "X,Y,Z: the DEM's coordinates and an elevation in metres, or +METRES above ground";
+  const auto first = text.find(','), second = text.find(',', first + 1);
+  if (first == std::string::npos || second == std::string::npos)
+    throw std::invalid_argument(fmt::format("{} = {}; must be {}", option, text, must_be));
+  const double x = parse_number(option, text.substr(0, first), must_be);
+  const double y = parse_number(option, text.substr(first + 1, second - first - 1), must_be);
+  std::string height = text.substr(second + 1);
+  const bool above_ground = height.starts_with('+');
+  if (above_ground) height.erase(0, 1);
+  double z = parse_number(option, height, must_be);
+
+  const auto& w = dem.ref.to_world;
+  const double area = w[1] * w[5] - w[2] * w[4];
+  const double col = (w[5] * (x - w[0]) - w[2] * (y - w[3])) / area;
+  const double row = (w[1] * (y - w[3]) - w[4] * (x - w[0])) / area;
+  const Vec3 place{col * dem.spacing.dx_m, -row * dem.spacing.dy_m, z};
+  if (!above_ground) return place;
+  const auto ground = Heightfield(dem).height(place.x, place.y);
+  if (!ground)
+    throw std::invalid_argument(fmt::format(
+        "{} = {}; there is no known ground below, so Z must be an elevation", option, text));
+  return {place.x, place.y, *ground + z};
+}
+
+ViewOptions view_options(const Options& o, const Dem& dem, Settings settings) {
+  for (auto& setting : picture_size(o.size)) settings.push_back(std::move(setting));
+  ViewOptions view;
+  dem::apply(settings, fields(view));
+  if (!o.camera.empty()) view.camera = point("camera", o.camera, dem);
+  if (!o.target.empty()) view.target = point("target", o.target, dem);
+  return view;
+}
+
+/// A DEM of 2 x 2 cells: cheap to draw, so that bad settings show before long work.
+Dem trial() { return {Raster<float>({2, 2}), Mask({2, 2}, 1), {}, {}}; }
+
+int render(const Options& o, Shell& shell) {
+  const Settings chosen = settings(o);
+  if (o.style == "view") {
+    Options plain = o;
+    plain.camera.clear(), plain.target.clear();
+    make_view(trial(), view_options(plain, trial(), chosen));
+  } else if (o.style == "relief") {
+    ReliefOptions relief;
+    dem::apply(chosen, fields(relief));
+  } else {
+    HillshadeOptions light;
+    dem::apply(chosen, fields(light));
+  }
+  check_writable(o.out, shell.overwrite);
+
+  const Run run = shell.run();
+  const Dem dem = read_dem(o.in, o.read, run.part(0, 0.1)).dem;
+  const auto start = std::chrono::steady_clock::now();
+  const Run drawing = run.part(0.1, 1);
+  Size size = dem.size();
+  double exaggeration = 1;
+  if (o.style == "hillshade") {
+    HillshadeOptions light;
+    dem::apply(chosen, fields(light));
+    exaggeration = light.exaggeration;
+    write_image(o.out, hillshade(dem.z, dem.spacing, light, dem.known, drawing), shell.overwrite);
+  } else if (o.style == "relief") {
+    ReliefOptions relief;
+    dem::apply(chosen, fields(relief));
+    exaggeration = relief.light.exaggeration;
+    write_image(o.out, shaded_relief(dem.z, dem.spacing, relief, dem.known, drawing),
+                shell.overwrite);
+  } else {
+    ViewOptions view = view_options(o, dem, chosen);
+    exaggeration = view.exaggeration = make_view(dem, view).exaggeration;
+    size = {view.width, view.height};
+    write_image(o.out, render_view(dem, view, drawing), shell.overwrite);
+  }
+  const double seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  shell.say("{}: {} of {} x {} pixels, heights x {:g}, {:.2f} s", o.out, o.style, size.cols,
+            size.rows, exaggeration, seconds);
+  shell.print({{"output", o.out},
+               {"style", o.style},
+               {"width", size.cols},
+               {"height", size.rows},
+               {"exaggeration", exaggeration},
+               {"seconds", seconds}},
+              "");
+  return kDone;
+}
+
+/// An option for each field: --name VALUE; a switch that is off is --name, one that is on --no-name.
+void add_field_options(CLI::App& app, const std::shared_ptr<Options>& o) {
+  ReliefOptions relief;
+  ViewOptions view;
+  const auto of_maps = fields(relief), of_views = fields(view);
+  const auto add = [&](const Field& f, const std::string& group, std::string normally) {
+    if (f.type() == "boolean") {
+      const bool on = f.text() == "true";
+      app.add_flag_callback((on ? "--no-" : "--") + f.name(),
+                            [o, name = f.name(), on] { o->given[name] = on ? "false" : "true"; },
+                            on ? "without " + f.doc() : f.doc())
+          ->group(group);
+      return;
+    }
+    const std::string values = f.choices().empty() ? f.doc() : f.doc() + ": " + f.range();
+    app.add_option_function<std::string>(
+           "--" + f.name(),
+           [o, name = f.name()](const std::string& text) { o->given[name] = text; },
+           values + " [" + normally + "]")
+        ->type_name(f.choices().empty() ? "N" : "NAME")
+        ->group(group);
+  };
+  for (const auto& f : of_maps) {
+    const auto same = std::ranges::find(of_views, f.name(), &Field::name);
+    const bool both = same != of_views.end();
+    const bool differ = both && same->text() != f.text();
+    add(both ? *same : f, both ? "All styles" : "Maps",
+        differ ? f.text() + "; view: " + same->text() : f.text());
+  }
+  for (const auto& f : of_views)
+    if (f.name() != "width" && f.name() != "height" &&
+        std::ranges::find(of_maps, f.name(), &Field::name) == of_maps.end())
+      add(f, "Views", f.text());
+}
+
+std::string palette_lines() {
+  std::string text;
+  for (const auto& p : palettes()) text += fmt::format("\n  {:<9} {}", p.name, p.doc);
+  return text;
+}
+
+}  // namespace
+
+void add_render(CLI::App& app, Shell& shell) {
+  const auto o = std::make_shared<Options>();
+  auto* verb =
+      add_verb(app, shell, "render", "Draw a DEM: hillshade, colour relief, perspective view",
+               "  dem render N44W072.hgt relief.png\n"
+               "  dem render N44W072.hgt shade.png --style hillshade --multidirectional\n"
+               "  dem render N44W072.hgt block.png --style view --palette alpine --samples 16\n"
+               "  dem render N44W072.hgt summit.png --style view --camera=-71.2,44.1,+300 \\\n"
+               "      --target=-71.3,44.27,1900 --fov 50\n"
+               "Palettes:" +
+                   palette_lines(),
+               [o, &shell] { return render(*o, shell); });
+  verb->add_option("IN", o->in, "a DEM, anything GDAL opens")->required()->type_name("");
+  verb->add_option("OUT", o->out, "the picture; the extension says the format: .png, .jpg, .tif")
+      ->required()
+      ->type_name("");
+  verb->add_option("--style", o->style, "hillshade and relief: maps, a pixel a cell; view")
+      ->check(CLI::IsMember({"hillshade", "relief", "view"}).description(""))
+      ->type_name("STYLE")
+      ->capture_default_str();
+  add_field_options(*verb, o);
+  verb->add_option("--size", o->size, "pixels of the picture [1600x900]")
+      ->type_name("WxH")
+      ->group("Views");
+  verb->add_option("--camera", o->camera, "in the DEM's coordinates; Z as +METRES is above ground")
+      ->type_name("X,Y,Z")
+      ->group("Views");
+  verb->add_option("--target", o->target, "what to look at [the middle of the terrain]")
+      ->type_name("X,Y,Z")
+      ->group("Views");
+  add_read_options(*verb, o->read);
+}
+
+}  // namespace dem::app
