@@ -16,7 +16,8 @@ LAYERS = {
     "algorithms": ["baseline", "draw", "evaluate", "holes", "mcmd", "sample", "spline"],
     "methods": ["generators", "methods"],
     "io": ["baselines", "cells", "crs", "gdal_raster", "gdal_support", "geodesy", "heightmap", "hgt", "image", "io",
-           "nodata", "oiio_support", "polygons", "staged_file"],
+           "nodata", "oiio_support", "polygons", "raster_stream",
+           "staged_file"],
 }
 
 # An algorithm that is written in several private files. They belong to it alone.

@@ -128,7 +128,7 @@ struct HoleWindow {
 };
 
 /// A window for each of the chosen holes.
-/// Method: a hole's own window is its box and a margin of 12 cells plus its greatest distance to
+/// Method: a hole's own window is its box and a margin of 6 cells plus its greatest distance to
 ///         data, clipped to the raster. A hole whose window lies inside that of a larger hole is
 ///         filled there. Small ones (at most 32 cells wide and high) that lie in the same square of
 ///         64 x 64 cells share a window. `origin`: column and row of the first cell in a lattice

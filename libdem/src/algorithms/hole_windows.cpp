@@ -15,7 +15,7 @@
 namespace dem {
 namespace {
 
-constexpr int least_margin = 12;  // beyond it the springs of the spline do not look
+constexpr int least_margin = 6;  // the spline's springs span three cells and bend with a few more
 constexpr int small_side = 32, square_side = 64;
 constexpr std::size_t side_by_side_cells = 1 << 16;  // larger windows use all threads by themselves
 
