@@ -15,7 +15,7 @@ LAYERS = {
     "helpers": ["gradient", "parallel", "random"],  # private headers that any algorithm may use
     "algorithms": ["baseline", "draw", "evaluate", "holes", "mcmd", "sample", "spline"],
     "methods": ["generators", "methods"],
-    "io": ["baselines", "cells", "crs", "gdal_raster", "gdal_support", "geodesy", "heightmap", "hgt", "image", "io",
+    "io": ["aligned_reader", "baselines", "cells", "crs", "gdal_raster", "gdal_support", "geodesy", "heightmap", "hgt", "image", "io",
            "nodata", "oiio_support", "polygons", "raster_stream",
            "staged_file"],
 }

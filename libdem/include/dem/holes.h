@@ -2,6 +2,7 @@
 // The voids of a DEM (connected groups of unknown cells, eight neighbours): their inventory, and
 // filling them one by one, each in a window of its own.
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -163,6 +164,8 @@ struct HolePatch {
   std::vector<CellRun> runs;           ///< in cells of the raster
   std::vector<float> z, sigma;         ///< of the runs' cells, in order; sigma may be empty
   std::vector<CellOrigin> origin;      ///< of the runs' cells
+  /// Of each hole: how many cells come from method, guide, water, and how many are left.
+  std::vector<std::array<std::uint64_t, 4>> cells_by_origin;
   std::vector<Figure> report;          ///< what the method says of the window
   double seconds = 0;
 };

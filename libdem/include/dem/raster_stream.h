@@ -18,6 +18,9 @@ namespace dem {
 /// The memory in bytes that GDAL may keep for blocks of all files (it is one cache).
 void set_block_cache(std::size_t bytes);
 
+/// Whether read_dem reads a file of this name through GDAL, and a RasterReader therefore can.
+bool reads_by_parts(const std::string& path);
+
 /// One band of elevations, read part by part.
 class RasterReader {
  public:
@@ -42,6 +45,25 @@ class RasterReader {
   /// A box, as read_dem gives it; its spacing is left at 1 m. `exact`: the values as doubles, where
   /// float32 cannot hold each of them (else left empty).
   Dem read(const Box& box, Raster<double>* exact = nullptr);
+
+ private:
+  struct File;
+  std::unique_ptr<File> file_;
+};
+
+/// Another DEM, brought onto the cells of a raster.
+class AlignedReader {
+ public:
+  /// `target`: the raster's georeference. Throws IoError when the file cannot be read, or only one
+  /// of the two says a coordinate system.
+  AlignedReader(const std::string& path, const GeoRef& target);
+  ~AlignedReader();
+  AlignedReader(AlignedReader&&) noexcept;
+  AlignedReader& operator=(AlignedReader&&) noexcept;
+
+  /// Its heights at the cells of a box: cubic, reprojected when its coordinates are others. Cells
+  /// that it does not cover, or where it is void, are unknown.
+  Dem read(const Box& box);
 
  private:
   struct File;

@@ -457,6 +457,8 @@ void set_colours(GDALRasterBandH band, const std::vector<CellClass>& classes) {
   GDALDestroyColorTable(table);
 }
 
+}  // namespace
+
 void set_georeference(GDALDatasetH dataset, const GeoRef& ref) {
   if (ref.to_world != GeoRef{}.to_world) {
     auto corner = corners(ref.to_world);
@@ -469,8 +471,6 @@ void set_georeference(GDALDatasetH dataset, const GeoRef& ref) {
     GDALSetSpatialRef(dataset, OGRSpatialReference::ToHandle(&crs));
   }
 }
-
-}  // namespace
 
 void describe_dataset(GDALDatasetH dataset, const GeoRef& ref, CellType type,
                       std::optional<double> nodata, const Source& source,

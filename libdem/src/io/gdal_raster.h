@@ -38,6 +38,9 @@ OpenBand open_band(const std::string& path, const ReadOptions& options, GdalErro
 
 GDALDataType gdal_type(CellType type);
 
+/// Place and coordinate system of a dataset.
+void set_georeference(GDALDatasetH dataset, const GeoRef& ref);
+
 /// What goes with the cells of a dataset of one band, all of it before the first cell.
 void describe_dataset(GDALDatasetH dataset, const GeoRef& ref, CellType type,
                       std::optional<double> nodata, const Source& source,

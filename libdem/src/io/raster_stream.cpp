@@ -32,20 +32,24 @@ void set_block_cache(std::size_t bytes) { GDALSetCacheMax64(GIntBig(bytes)); }
 struct RasterReader::File {
   std::string path;
   ReadOptions options;
-  GdalErrors errors;
   OpenBand open;
   GeoRef ref;
   std::vector<double> sentinels;  // undeclared values that scan() found to mean unknown
   bool south_up = false;
 
   File(const std::string& name, const ReadOptions& read_options)
-      : path(name), options(read_options), open(open_band(path, options, errors)), ref(open.ref) {
+      : path(name), options(read_options), open(open_quietly(path, options)), ref(open.ref) {
     // Row 0 becomes the north when the file begins in the south.
     auto& at = ref.to_world;
     south_up = at[5] > 0 && at[2] == 0 && at[4] == 0;
     if (!south_up) return;
     at[3] += at[5] * (open.size.rows - 1);
     at[5] = -at[5];
+  }
+
+  static OpenBand open_quietly(const std::string& path, const ReadOptions& options) {
+    GdalErrors errors;
+    return open_band(path, options, errors);
   }
 
   NodataSearch search() const {
@@ -55,6 +59,7 @@ struct RasterReader::File {
   /// The file's values of a box in rows as we count them; what says nothing becomes unknown.
   template <class T>
   void read_values(const Box& box, NodataSearch& search, Raster<T>& values, Mask& known) {
+    const GdalErrors errors;
     const GDALDataType type = std::is_same_v<T, float> ? GDT_Float32 : GDT_Float64;
     const int top = south_up ? open.size.rows - box.row - box.rows : box.row;
     CPLErr error = GDALRasterIO(open.band, GF_Read, box.col, top, box.cols, box.rows,
@@ -208,7 +213,6 @@ struct RasterWriter::File {
   CellType type;
   Run run;
   WriteOptions options;
-  GdalErrors errors;
   StagedFile staged;
   std::string plain;  // what is written row by row: the file itself, or a GeoTIFF to copy from
   DatasetPtr dataset;
@@ -228,6 +232,7 @@ struct RasterWriter::File {
 
   template <class T>
   void write(const Dem& rows, const Raster<double>& exact) {
+    const GdalErrors errors;
     std::vector<T> cells(rows.size().cells());
     const T unknown = nodata ? T(*nodata) : T(0);
     const bool apart = to_cells<T>(path, rows.z.cells(), exact.cells(), rows.known.cells(), unknown,
@@ -255,10 +260,11 @@ RasterWriter::RasterWriter(const std::string& path, Size size, const GeoRef& ref
   file_ =
       std::make_unique<File>(path, format, size, options.type.value_or(source.type), options, run);
   File& f = *file_;
+  const GdalErrors errors;
   const auto list = creation_options("GTiff", f.type, options, run);
   f.dataset.reset(GDALCreate(checked_driver(path, "GTiff"), f.plain.c_str(), size.cols, size.rows,
                              1, gdal_type(f.type), const_cast<char**>(list.List())));
-  if (!f.dataset) f.errors.fail(path, "cannot be written");
+  if (!f.dataset) errors.fail(path, "cannot be written");
   with_type(f.type, [&]<class T>(T) {
     if (const auto nodata = choose_nodata<T>(path, source, options)) f.nodata = double(*nodata);
   });
@@ -275,6 +281,7 @@ void RasterWriter::write(const Dem& rows, const Raster<double>& exact) {
 
 void RasterWriter::commit() {
   File& f = *file_;
+  const GdalErrors errors;  // those of closing too: a full disk often shows only then
   if (f.row != f.size.rows) throw std::logic_error("rows of the raster are missing");
   if (f.format == "COG") {
     GdalProgress progress(f.run, "writing");
@@ -286,10 +293,10 @@ void RasterWriter::commit() {
     const bool complete = cog != nullptr;
     cog.reset();
     progress.rethrow();
-    if (!complete || f.errors.any()) f.errors.fail(f.path, "cannot be written");
+    if (!complete || errors.any()) errors.fail(f.path, "cannot be written");
   }
   f.dataset.reset();
-  if (f.errors.any()) f.errors.fail(f.path, "cannot be written");
+  if (errors.any()) errors.fail(f.path, "cannot be written");
   if (f.plain != f.staged.path()) VSIUnlink(f.plain.c_str());
   f.staged.commit();
 }
