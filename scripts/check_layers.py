@@ -16,9 +16,9 @@ LAYERS = {
     "algorithms": ["baseline", "draw", "erosion", "evaluate", "faults", "holes", "mcmd", "networks", "noise",
                    "outliers", "points", "raytrace", "riverland", "sample", "sketch", "spline"],
     "methods": ["generators", "gridding", "methods"],
-    "io": ["baselines", "cells", "crs", "gdal_raster", "gdal_support", "geodesy", "heightmap", "hgt", "image", "io",
-           "las", "lattices", "nodata", "ogr_layers", "oiio_support", "point_files", "point_reading", "point_text",
-           "point_vectors", "polygons", "staged_file"],
+    "io": ["aligned_reader", "baselines", "cells", "crs", "gdal_raster", "gdal_support", "geodesy", "heightmap", "hgt",
+           "image", "io", "las", "lattices", "nodata", "ogr_layers", "oiio_support", "point_files", "point_reading",
+           "point_text", "point_vectors", "polygons", "raster_stream", "staged_file"],
 }
 
 # An algorithm that is written in several private files. They belong to it alone.

@@ -288,15 +288,15 @@ TEST(PlanWindows, HoldEachHoleWithAMarginThatGrowsWithIt) {
   cut(known, 200, 100, 50, 40);
   const auto windows = windows_of(hilly(known));
   ASSERT_EQ(windows.size(), 2u);
-  EXPECT_EQ(windows[0].box, (Box{20 - 13, 30 - 13, 27, 27}));
-  EXPECT_EQ(windows[1].box, (Box{200 - 32, 100 - 32, 114, 104}));
+  EXPECT_EQ(windows[0].box, (Box{20 - 7, 30 - 7, 15, 15}));
+  EXPECT_EQ(windows[1].box, (Box{200 - 26, 100 - 26, 102, 92}));
 }
 
 TEST(PlanWindows, PutAHoleIntoTheWindowOfALargerOneThatHoldsItsOwn) {
   Mask known({400, 300}, 1);
   cut(known, 200, 100, 50, 40);
-  cut(known, 185, 120, 2, 2);  // its window ends 30 cells to the left: within 32
-  cut(known, 160, 120, 2, 2);  // not within
+  cut(known, 185, 120, 2, 2);  // its window ends 22 cells to the left: within 26
+  cut(known, 177, 140, 2, 2);  // not within, and in another square
   const auto windows = windows_of(hilly(known));
   ASSERT_EQ(windows.size(), 2u);
   EXPECT_EQ(windows[0].holes.size(), 2u);

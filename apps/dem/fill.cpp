@@ -6,6 +6,7 @@
 
 #include "dem/baselines.h"
 #include "hole_fill.h"
+#include "stream_fill.h"
 #include "verbs.h"
 
 namespace dem::app {
@@ -22,7 +23,9 @@ struct Options {
   std::optional<std::uint64_t> seed;
   std::string method{default_fill_method()};
   std::vector<std::string> set;
-  std::string origin, table;
+  std::string origin, table, memory, water;
+  std::vector<std::string> aux;
+  bool resume = false;
   bool whole = false;
   HoleChoice choice;
   ReadOptions read;
@@ -82,6 +85,10 @@ void report(const Options& o, const ChosenMethod& chosen, const FillOutcome& out
     for (const auto& hole : out.outcomes) verdicts.push_back(hole.verdict);
     std::string left = left_text(out.holes, verdicts);
     if (out.left) left += fmt::format(", {} left unfilled", grouped(out.left));
+    if (out.memory_needed)
+      left += fmt::format(" (--memory {}M would do)", (out.memory_needed >> 20) + 1);
+    if (out.guide_cells)
+      left += fmt::format(", {} over an auxiliary DEM", grouped(out.guide_cells));
     if (out.water_cells) left += fmt::format(", {} flat as water", grouped(out.water_cells));
     shell.say(
         "filled {} of {} unknown cells ({} of {} voids touch the border: {} cells){}; {}, {} "
@@ -89,6 +96,14 @@ void report(const Options& o, const ChosenMethod& chosen, const FillOutcome& out
         grouped(out.filled), grouped(out.unknown), grouped(out.border_holes),
         grouped(out.holes.size()), grouped(out.border_cells), left, o.method, grouped(out.windows),
         out.windows == 1 ? "" : "s", out.seconds, known_cells(o, out, type), o.out);
+  }
+  Json aux = Json::array();
+  for (const auto& fit : out.aux) {
+    if (!fit.warning.empty()) shell.say("warning: {} {}", fit.path, fit.warning);
+    aux.push_back({{"path", fit.path},
+                   {"offset_m", fit.offset_m},
+                   {"shift_cells", {fit.shift_cols, fit.shift_rows}},
+                   {"warning", fit.warning}});
   }
   Json figures = Json::array();
   for (const auto& f : out.figures)
@@ -105,6 +120,8 @@ void report(const Options& o, const ChosenMethod& chosen, const FillOutcome& out
                {"windows", out.windows},
                {"filled", out.filled},
                {"water", out.water_cells},
+               {"over_aux", out.guide_cells},
+               {"aux", aux},
                {"left_at_border", out.left_at_border},
                {"left_by_choice", out.left_by_choice},
                {"left", out.left},
@@ -121,70 +138,133 @@ const std::vector<CellClass> kOrigins{{0, "measured", {160, 160, 160}},
                                       {3, "water, flat", {50, 110, 200}},
                                       {4, "left void", {0, 0, 0}}};
 
-void write_origin(const Options& o, const DemFile& file, const FillOutcome& out, bool overwrite,
-                  const Run& run) {
-  Dem kinds{Raster<float>(file.dem.size()), Mask(file.dem.size(), 1), file.dem.ref,
-            file.dem.spacing};
-  std::ranges::copy(out.origin.cells(), kinds.z.cells().begin());
-  Source described;
-  described.type = CellType::uint8;
-  described.node_registered = file.source.node_registered;
-  described.band_description = "where each height comes from";
-  WriteOptions options;
-  options.overwrite = overwrite;
-  options.classes = kOrigins;
-  write_dem(o.origin, kinds, described, options, run);
+Source layer_source(const Source& of, std::string description) {
+  Source source;
+  source.node_registered = of.node_registered;
+  source.band_description = std::move(description);
+  return source;
 }
 
-void write_sigma(const Options& o, const DemFile& file, const FillOutcome& out, bool overwrite,
-                 const Run& run) {
-  Dem sigma = file.dem;
-  sigma.z = out.sigma;
-  Source described;
-  described.node_registered = file.source.node_registered;
-  described.band_description = "standard deviation of the elevation in metres";
+Source sigma_source(const Source& of) {
+  return layer_source(of, "standard deviation of the elevation in metres");
+}
+
+Source origin_source(const Source& of) {
+  Source source = layer_source(of, "where each height comes from");
+  source.type = CellType::uint8;
+  return source;
+}
+
+WriteOptions layer_options(bool overwrite) {
   WriteOptions options;
   options.overwrite = overwrite;
-  write_dem(o.sigma, sigma, described, options, run);
+  return options;
+}
+
+WriteOptions origin_options(bool overwrite) {
+  WriteOptions options = layer_options(overwrite);
+  options.classes = kOrigins;
+  return options;
+}
+
+/// What the output says of its making.
+std::vector<std::pair<std::string, std::string>> making(const Options& o,
+                                                        const ChosenMethod& chosen,
+                                                        const FillOutcome& out,
+                                                        const Shell& shell) {
+  if (out.unknown == 0 || !holds_metadata(o.out, o.write.format)) return {};
+  return {{"DEM_INPUT", o.in},
+          {"DEM_COMMAND", shell.command},
+          {"DEM_METHOD", o.method},
+          {"DEM_SETTINGS", settings_text(chosen.settings)},
+          {"DEM_KNOWN_CHECKSUM", fmt::format("{:016x}", out.known_checksum)},
+          {"DEM_VERSION", DEM_VERSION}};
+}
+
+void write_table(const Options& o, const FillOutcome& out, bool overwrite) {
+  const Json table{{"input", o.in}, {"output", o.out}, {"holes", hole_table(out, o.method)}};
+  write_text(o.table, table.dump(2, ' ', false, Json::error_handler_t::replace) + "\n", overwrite);
+}
+
+int exit_code(const FillOutcome& out) {
+  if (!out.known_kept) return kCheckFailed;
+  return out.left > 0 ? kUnfilled : kDone;
+}
+
+/// Strip by strip, within a bound of memory.
+int fill_stream(const Options& o, const FillRequest& request, std::size_t memory, Shell& shell) {
+  const Run run = shell.run();
+  StreamFill::Options options{o.in, o.out, o.read, memory, o.resume, ""};
+  for (const auto& part : {o.method, settings_text(request.method.settings), o.choice.text(),
+                           o.sigma, o.table, std::string(o.whole ? "whole" : ""), o.memory, o.water,
+                           fmt::format("{}", fmt::join(o.aux, " "))})
+    options.settings += part + " | ";
+  StreamFill job(options, request, run.part(0, 0.7));
+  FillOutcome& out = job.outcome();
+  if (job.resumed_windows() > 0)
+    shell.say("resumed: {} of {} windows were done", grouped(job.resumed_windows()),
+              grouped(out.windows));
+
+  WriteOptions write = o.write;
+  write.overwrite = shell.overwrite;
+  write.metadata = making(o, request.method, out, shell);
+  if (!o.sigma.empty())
+    job.write(o.sigma, StreamFill::Layer::sigma, sigma_source(job.source()),
+              layer_options(shell.overwrite), run.part(0.7, 0.8));
+  if (!o.origin.empty())
+    job.write(o.origin, StreamFill::Layer::origin, origin_source(job.source()),
+              origin_options(shell.overwrite), run.part(0.8, 0.85));
+  if (!o.table.empty()) write_table(o, out, shell.overwrite);
+  job.write(o.out, StreamFill::Layer::heights, job.source(), write, run.part(0.85, 1));
+  job.finish();
+  report(o, request.method, out, job.source().type, shell);
+  return exit_code(out);
+}
+
+/// The bytes that may be used when the raster is to be worked on part by part; 0: as a whole.
+std::size_t stream_memory(const Options& o) {
+  if (!o.memory.empty()) return parse_memory("memory", o.memory);
+  return o.resume ? machine_memory() / 2 : 0;
 }
 
 int fill(const Options& o, Shell& shell) {
   const ChosenMethod chosen = choose(o);
   check(o.choice);
+  const std::size_t memory = stream_memory(o);
   for (const std::string& path : {o.out, o.sigma, o.origin, o.table})
     if (!path.empty()) check_writable(path, shell.overwrite);
+
+  const FillRequest request{chosen,           o.choice,         o.whole,
+                            !o.table.empty(), !o.sigma.empty(), !o.origin.empty()};
+  if (memory > 0 && reads_by_parts(o.in)) return fill_stream(o, request, memory, shell);
 
   const Run run = shell.run();
   DemFile file = read_dem(o.in, o.read, run.part(0, 0.2));
   if (count(file.dem.known) == 0)
     throw IoError(o.in, "no known cell; at least one is needed to fill the others");
   warn_of_outliers(file.dem, shell);
-  const FillRequest request{chosen,           o.choice,         o.whole,
-                            !o.table.empty(), !o.sigma.empty(), !o.origin.empty()};
   const FillOutcome out = fill_holes_of(file.dem, request, run.part(0.2, 0.8));
 
   WriteOptions write = o.write;
   write.overwrite = shell.overwrite;
-  if (out.unknown > 0 && holds_metadata(o.out, o.write.format))
-    write.metadata = {{"DEM_INPUT", o.in},
-                      {"DEM_COMMAND", shell.command},
-                      {"DEM_METHOD", o.method},
-                      {"DEM_SETTINGS", settings_text(chosen.settings)},
-                      {"DEM_KNOWN_CHECKSUM", fmt::format("{:016x}", out.known_checksum)},
-                      {"DEM_VERSION", DEM_VERSION}};
-  if (!o.sigma.empty()) write_sigma(o, file, out, shell.overwrite, run.part(0.8, 0.85));
-  if (!o.origin.empty()) write_origin(o, file, out, shell.overwrite, run.part(0.85, 0.87));
-  if (!o.table.empty())
-    write_text(o.table,
-               Json{{"input", o.in}, {"output", o.out}, {"holes", hole_table(out, o.method)}}.dump(
-                   2, ' ', false, Json::error_handler_t::replace) +
-                   "\n",
-               shell.overwrite);
+  write.metadata = making(o, chosen, out, shell);
+  if (!o.sigma.empty()) {
+    Dem sigma = file.dem;
+    sigma.z = out.sigma;
+    write_dem(o.sigma, sigma, sigma_source(file.source), layer_options(shell.overwrite),
+              run.part(0.8, 0.85));
+  }
+  if (!o.origin.empty()) {
+    Dem kinds{Raster<float>(file.dem.size()), Mask(file.dem.size(), 1), file.dem.ref,
+              file.dem.spacing};
+    std::ranges::copy(out.origin.cells(), kinds.z.cells().begin());
+    write_dem(o.origin, kinds, origin_source(file.source), origin_options(shell.overwrite),
+              run.part(0.85, 0.87));
+  }
+  if (!o.table.empty()) write_table(o, out, shell.overwrite);
   write_dem(o.out, file.dem, file.source, write, run.part(0.87, 1));
-
   report(o, chosen, out, file.source.type, shell);
-  if (!out.known_kept) return kCheckFailed;
-  return out.left > 0 ? kUnfilled : kDone;
+  return exit_code(out);
 }
 
 std::string method_names() {
@@ -259,8 +339,20 @@ void add_fill(CLI::App& app, Shell& shell) {
   verb->add_option("--report-holes", o->table,
                    "also write a JSON table of the holes, with the error of hidden rim cells")
       ->type_name("FILE");
+  verb->add_option("--aux", o->aux,
+                   "another DEM that knows the holes; each hole takes the best of several, or none")
+      ->allow_extra_args(false)
+      ->type_name("DEM");
+  verb->add_option("--water", o->water,
+                   "polygons of lakes: flat in the holes, their shores above; anything OGR opens")
+      ->type_name("FILE");
   verb->add_flag("--whole", o->whole,
                  "fill the raster as one problem; else so only when a quarter of it is unknown");
+  verb->add_option("--memory", o->memory,
+                   "work part by part within so much memory: 2G, 500M; holes too large are left")
+      ->type_name("SIZE");
+  verb->add_flag("--resume", o->resume,
+                 "keep a journal beside OUT; the same command goes on where it was stopped");
   o->choice.add_options(*verb);
   add_read_options(*verb, o->read);
   add_write_options(*verb, o->write);

@@ -6,7 +6,7 @@
 namespace dem::app {
 namespace {
 
-constexpr std::size_t verdicts = 7;
+constexpr std::size_t verdicts = 8;
 
 std::string names_of_facts() {
   std::string names;
@@ -54,15 +54,15 @@ void HoleChoice::add_options(CLI::App& app) {
       ->group(group);
 }
 
-bool HoleChoice::any() const {
-  return inner_only || max_area_km2 || max_distance_m || min_cells || !where.empty() ||
-         !region.empty();
+std::string HoleChoice::text() const {
+  return fmt::format("{} {} {} {} {} {}", inner_only, max_area_km2.value_or(-1),
+                     max_distance_m.value_or(-1), min_cells.value_or(0), where, region);
 }
 
 std::string_view text_of(Verdict verdict) {
   constexpr std::array<std::string_view, verdicts> texts{
       "fill",    "--inner-only", "--max-area-km2", "--min-cells", "--max-distance-m",
-      "--where", "--region"};
+      "--where", "--region",     "--memory"};
   return texts[std::size_t(verdict)];
 }
 

@@ -19,11 +19,11 @@ struct HoleChoice {
 
   void add_options(CLI::App& app);
 
-  /// Whether any option leaves holes out.
-  bool any() const;
+  /// The options in words: equal for equal choices.
+  std::string text() const;
 };
 
-/// Why a hole is not filled; fill: it is.
+/// Why a hole is not filled; fill: it is. All but `memory` are the user's choice.
 enum class Verdict : std::uint8_t {
   fill,
   at_border,
@@ -31,7 +31,8 @@ enum class Verdict : std::uint8_t {
   too_small,
   too_deep,
   where,
-  region
+  region,
+  memory
 };
 std::string_view text_of(Verdict verdict);
 

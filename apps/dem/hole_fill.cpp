@@ -79,7 +79,6 @@ std::function<Filled(const Dem&, const Run&)> window_fill(const FillRequest& req
 }
 
 void account(const HolePatch& patch, const FillPlan& plan, FillOutcome& outcome) {
-  std::size_t run = 0, cell = 0;
   for (std::size_t i = 0; i < patch.holes.size(); ++i) {
     HoleOutcome& hole = outcome.outcomes[patch.holes[i]];
     hole.guide = patch.guide[i];
@@ -87,14 +86,11 @@ void account(const HolePatch& patch, const FillPlan& plan, FillOutcome& outcome)
     hole.offset_m = patch.offset_m[i];
     hole.seconds = patch.seconds;
     hole.window_cells = plan.windows[patch.window].box.cells();
-    for (; run < patch.first_run[i + 1]; ++run)
-      for (int n = patch.runs[run].end - patch.runs[run].begin; n > 0; --n) {
-        const CellOrigin origin = patch.origin[cell++];
-        (origin == CellOrigin::left    ? hole.left_cells
-         : origin == CellOrigin::water ? hole.water_cells
-         : origin == CellOrigin::guide ? hole.guide_cells
-                                       : hole.method_cells) += 1;
-      }
+    const auto& cells = patch.cells_by_origin[i];
+    hole.method_cells = cells[0];
+    hole.guide_cells = cells[1];
+    hole.water_cells = cells[2];
+    hole.left_cells = cells[3];
     outcome.left += hole.left_cells;
     outcome.filled += hole.method_cells + hole.guide_cells + hole.water_cells;
     outcome.water_cells += hole.water_cells;
@@ -121,12 +117,15 @@ FillOutcome fill_holes_of(Dem& dem, const FillRequest& request, const Run& run) 
           std::uint8_t(dem.known.cells()[i] ? CellOrigin::measured : CellOrigin::left);
   }
 
+  FillLayers layers(request.aux, request.water, dem.ref);
   HoleWork work;
   work.flat_water = !plan.whole;
   work.rim_errors = request.rim_errors;
   work.fill = window_fill(request, plan.whole);
   work.read = [&](const Box& box) {
-    return WindowData{crop(dem, box, spacing[std::size_t(box.row + box.rows / 2)]), {}, {}};
+    WindowData data{crop(dem, box, spacing[std::size_t(box.row + box.rows / 2)]), {}, {}};
+    layers.add(data, box);
+    return data;
   };
   // Heights go straight to their place; while others still look at the mask, it stays as it is.
   std::vector<CellRun> filled;
@@ -149,6 +148,7 @@ FillOutcome fill_holes_of(Dem& dem, const FillRequest& request, const Run& run) 
   const auto start = std::chrono::steady_clock::now();
   fill_windows(out.holes, plan.windows, work, run);
   out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  out.aux = layers.fits();
   out.known_kept = known_checksum(dem) == out.known_checksum;
   for (const CellRun& cells : filled)
     std::fill_n(dem.known.row(cells.row).begin() + cells.begin, cells.end - cells.begin,
@@ -168,6 +168,8 @@ Json hole_table(const FillOutcome& outcome, const std::string& method) {
       row["left_by"] = text_of(o.verdict);
     else
       row.update({{"method", method},
+                  {"aux", o.guide >= 0 ? Json(outcome.aux[std::size_t(o.guide)].path) : Json()},
+                  {"aux_offset_m", number(o.offset_m)},
                   {"filled", o.method_cells + o.guide_cells + o.water_cells},
                   {"water", o.water_cells},
                   {"left", o.left_cells},

@@ -10,6 +10,7 @@
 #include "common.h"
 #include "dem/holes.h"
 #include "dem/methods.h"
+#include "fill_layers.h"
 #include "hole_choice.h"
 
 namespace dem::app {
@@ -21,6 +22,8 @@ struct FillRequest {
   bool whole = false;       ///< one problem, however few cells are unknown
   bool rim_errors = false;  ///< tell how well hidden rim cells are found
   bool keep_sigma = false, keep_origin = false;
+  std::vector<std::string> aux{};  ///< auxiliary DEMs
+  std::string water{};             ///< polygons of water
 };
 
 /// What became of one hole.
@@ -42,8 +45,10 @@ struct FillOutcome {
   std::size_t border_holes = 0, border_cells = 0, water_cells = 0, guide_cells = 0;
   bool known_kept = true;  ///< the checksum of the known cells is what it was
   std::uint64_t known_checksum = 0;
+  std::size_t memory_needed = 0;  ///< bytes for the largest window that did not fit; 0: all did
   double seconds = 0;
-  std::vector<Figure> figures;  ///< of the method, when there was one window
+  std::vector<Figure> figures;       ///< of the method, when there was one window
+  std::vector<FillLayers::Fit> aux;  ///< of the auxiliary DEMs
   Raster<float> sigma;
   Raster<std::uint8_t> origin;
 };

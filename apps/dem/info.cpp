@@ -165,7 +165,7 @@ void add_info(CLI::App& app, Shell& shell) {
       ->required()
       ->type_name("");
   verb->add_option("--holes", options->holes,
-                   "also write the voids as polygons with area, distance to data, rim relief ...")
+                   "also write the voids as polygons with area, rim relief ...")
       ->type_name("FILE.gpkg");
   add_read_options(*verb, options->read);
 }

@@ -2,6 +2,7 @@
 // The voids of a DEM (connected groups of unknown cells, eight neighbours): their inventory, and
 // filling them one by one, each in a window of its own.
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -128,7 +129,7 @@ struct HoleWindow {
 };
 
 /// A window for each of the chosen holes.
-/// Method: a hole's own window is its box and a margin of 12 cells plus its greatest distance to
+/// Method: a hole's own window is its box and a margin of 6 cells plus its greatest distance to
 ///         data, clipped to the raster. A hole whose window lies inside that of a larger hole is
 ///         filled there. Small ones (at most 32 cells wide and high) that lie in the same square of
 ///         64 x 64 cells share a window. `origin`: column and row of the first cell in a lattice
@@ -163,6 +164,8 @@ struct HolePatch {
   std::vector<CellRun> runs;           ///< in cells of the raster
   std::vector<float> z, sigma;         ///< of the runs' cells, in order; sigma may be empty
   std::vector<CellOrigin> origin;      ///< of the runs' cells
+  /// Of each hole: how many cells come from method, guide, water, and how many are left.
+  std::vector<std::array<std::uint64_t, 4>> cells_by_origin;
   std::vector<Figure> report;          ///< what the method says of the window
   double seconds = 0;
 };

@@ -15,7 +15,7 @@
 namespace dem {
 namespace {
 
-constexpr int least_margin = 12;  // beyond it the springs of the spline do not look
+constexpr int least_margin = 6;  // the spline's springs span three cells and bend with a few more
 constexpr int small_side = 32, square_side = 64;
 constexpr std::size_t side_by_side_cells = 1 << 16;  // larger windows use all threads by themselves
 
@@ -255,6 +255,15 @@ void add_flat(const Place& place, const Box& box, bool sigma, HolePatch& patch) 
     patch.runs.push_back({run.row + box.row, run.begin + box.col, run.end + box.col});
 }
 
+void count_origins(HolePatch& patch) {
+  patch.cells_by_origin.assign(patch.holes.size(), {});
+  std::size_t run = 0, cell = 0;
+  for (std::size_t i = 0; i < patch.holes.size(); ++i)
+    for (; run < patch.first_run[i + 1]; ++run)
+      for (int n = patch.runs[run].end - patch.runs[run].begin; n > 0; --n)
+        ++patch.cells_by_origin[i][std::size_t(patch.origin[cell++]) - 1];
+}
+
 /// Fills one window and keeps what lies in its holes.
 HolePatch fill_window(const std::vector<Hole>& holes, const HoleWindow& window, WindowData&& data,
                       const HoleWork& work, const Run& run) {
@@ -313,6 +322,7 @@ HolePatch fill_window(const std::vector<Hole>& holes, const HoleWindow& window, 
       patch.offset_m[i] = mean_offset(dem, data.guides[std::size_t(guide)], places[i]);
   }
   patch.first_run.push_back(patch.runs.size());
+  count_origins(patch);
   patch.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return patch;
 }

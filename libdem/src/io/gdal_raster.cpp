@@ -272,54 +272,68 @@ void turn_north_up(DemFile& file) {
 
 }  // namespace
 
-DemFile read_gdal(const std::string& path, const ReadOptions& options, const Run& run) {
-  GdalErrors errors;
-  const DatasetPtr dataset(GDALOpenEx(path.c_str(),
-                                      GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR,
-                                      nullptr, nullptr, nullptr));
-  if (!dataset) errors.fail(path, "cannot be opened");
+OpenBand open_band(const std::string& path, const ReadOptions& options, GdalErrors& errors) {
+  OpenBand open;
+  open.dataset.reset(GDALOpenEx(path.c_str(),
+                                GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, nullptr,
+                                nullptr, nullptr));
+  if (!open.dataset) errors.fail(path, "cannot be opened");
   errors.clear();  // a driver that was tried in vain may have complained
-
-  const GDALRasterBandH band = choose_band(path, dataset.get(), options.band);
+  const GDALDatasetH dataset = open.dataset.get();
+  const GDALRasterBandH band = open.band = choose_band(path, dataset, options.band);
   const CellType type = cell_type(path, band);
-  const Crs crs = read_crs(dataset.get());
+  const Crs crs = read_crs(dataset);
   const ToMetres metres = to_metres(band, crs);
 
-  DemFile file;
-  Source& source = file.source;
+  Source& source = open.source;
   source.path = path;
-  source.format = GDALGetDriverShortName(GDALGetDatasetDriver(dataset.get()));
+  source.format = GDALGetDriverShortName(GDALGetDatasetDriver(dataset));
   source.type = type;
   source.vertical_datum = crs.vertical_datum;
   source.band_description = GDALGetDescription(band);
   source.node_registered =
-      text_or_empty(GDALGetMetadataItem(dataset.get(), "AREA_OR_POINT", nullptr)) == "Point";
-  append_metadata(dataset.get(), source);
+      text_or_empty(GDALGetMetadataItem(dataset, "AREA_OR_POINT", nullptr)) == "Point";
+  append_metadata(dataset, source);
   append_metadata(band, source);
   if (!metres.said.empty()) source.metadata.emplace_back("HEIGHTS", metres.said);
 
   std::array<double, 6> corner{};
-  if (GDALGetGeoTransform(dataset.get(), corner.data()) == CE_None)
-    file.dem.ref.to_world = centres(corner);
-  file.dem.ref.crs_wkt = crs.wkt;
+  if (GDALGetGeoTransform(dataset, corner.data()) == CE_None) open.ref.to_world = centres(corner);
+  open.ref.crs_wkt = crs.wkt;
+  open.size = {GDALGetRasterXSize(dataset), GDALGetRasterYSize(dataset)};
+  open.scale = metres.scale;
+  open.offset = metres.offset;
+  open.declared_nodata = declared_nodata(band);
+  open.mask = mask_band(band);
+  open.signed_byte = is_signed_byte(band);
+  open.floats_hold_it =
+      type != CellType::int32 && type != CellType::uint32 && type != CellType::float64;
+  return open;
+}
 
-  const Size size{GDALGetRasterXSize(dataset.get()), GDALGetRasterYSize(dataset.get())};
+DemFile read_gdal(const std::string& path, const ReadOptions& options, const Run& run) {
+  GdalErrors errors;
+  OpenBand open = open_band(path, options, errors);
+  const Size size = open.size;
+  const CellType type = open.source.type;
+  DemFile file;
+  file.source = std::move(open.source);
+  Source& source = file.source;
+  file.dem.ref = open.ref;
   file.dem.z = Raster<float>(size);
   file.dem.known = Mask(size, 1);
-  NodataSearch search(declared_nodata(band), "declared value", options, std::abs(metres.scale));
+  NodataSearch search(open.declared_nodata, "declared value", options, std::abs(open.scale));
 
-  const bool floats_hold_it =
-      type != CellType::int32 && type != CellType::uint32 && type != CellType::float64;
-  if (floats_hold_it && !metres.needed()) {
-    read_cells(path, band, errors, search, file.dem.z, file.dem.known, run);
+  if (open.floats_hold_it && !open.in_other_units()) {
+    read_cells(path, open.band, errors, search, file.dem.z, file.dem.known, run);
   } else {
     Raster<double> exact(size);
-    read_cells(path, band, errors, search, exact, file.dem.known, run);
-    if (metres.needed()) {
+    read_cells(path, open.band, errors, search, exact, file.dem.known, run);
+    if (open.in_other_units()) {
       const auto known = file.dem.known.cells();
       const auto values = exact.cells();
       for (std::size_t i = 0; i < values.size(); ++i)
-        if (known[i]) values[i] = values[i] * metres.scale + metres.offset;
+        if (known[i]) values[i] = values[i] * open.scale + open.offset;
       if (type != CellType::float64) source.type = CellType::float32;
     }
     round_to_floats(std::move(exact), file);
@@ -331,10 +345,7 @@ DemFile read_gdal(const std::string& path, const ReadOptions& options, const Run
   return file;
 }
 
-namespace {
-
 // --- Writing: cells of the file's type
-// -------------------------------------------------------------
 
 GDALDataType gdal_type(CellType type) {
   switch (type) {
@@ -356,6 +367,8 @@ GDALDataType gdal_type(CellType type) {
   }
   throw std::invalid_argument("unknown cell type");
 }
+
+namespace {
 
 template <class T>
 bool fits(double nodata) {
@@ -444,6 +457,8 @@ void set_colours(GDALRasterBandH band, const std::vector<CellClass>& classes) {
   GDALDestroyColorTable(table);
 }
 
+}  // namespace
+
 void set_georeference(GDALDatasetH dataset, const GeoRef& ref) {
   if (ref.to_world != GeoRef{}.to_world) {
     auto corner = corners(ref.to_world);
@@ -455,6 +470,22 @@ void set_georeference(GDALDatasetH dataset, const GeoRef& ref) {
     crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
     GDALSetSpatialRef(dataset, OGRSpatialReference::ToHandle(&crs));
   }
+}
+
+void describe_dataset(GDALDatasetH dataset, const GeoRef& ref, CellType type,
+                      std::optional<double> nodata, const Source& source,
+                      const WriteOptions& options) {
+  const GDALRasterBandH band = GDALGetRasterBand(dataset, 1);
+  set_georeference(dataset, ref);
+  set_metadata(dataset, source, options);
+  if (nodata) GDALSetRasterNoDataValue(band, *nodata);
+  if (type == CellType::int8)
+    GDALSetMetadataItem(band, "PIXELTYPE", "SIGNEDBYTE", "IMAGE_STRUCTURE");
+  if (options.classes.empty())
+    GDALSetRasterUnitType(band, "m");
+  else
+    set_colours(band, options.classes);
+  if (!source.band_description.empty()) GDALSetDescription(band, source.band_description.c_str());
 }
 
 CPLStringList creation_options(const std::string& format, CellType type,
@@ -488,6 +519,8 @@ GDALDriverH checked_driver(const std::string& path, const std::string& format) {
   return driver;
 }
 
+namespace {
+
 template <class T>
 void write_typed(const std::string& path, const std::string& format, CellType type, const Dem& dem,
                  const Source& source, const WriteOptions& options, const Run& run) {
@@ -497,17 +530,9 @@ void write_typed(const std::string& path, const std::string& format, CellType ty
   Cells<T> cells = convert<T>(path, dem, source, options);
   const auto [cols, rows] = dem.size();
   const DatasetPtr memory = wrap_cells(cells.values.data(), cols, rows, gdal_type(type));
-  const GDALRasterBandH band = GDALGetRasterBand(memory.get(), 1);
-  set_georeference(memory.get(), dem.ref);
-  set_metadata(memory.get(), source, options);
-  if (cells.nodata) GDALSetRasterNoDataValue(band, double(*cells.nodata));
-  if (type == CellType::int8)
-    GDALSetMetadataItem(band, "PIXELTYPE", "SIGNEDBYTE", "IMAGE_STRUCTURE");
-  if (options.classes.empty())
-    GDALSetRasterUnitType(band, "m");
-  else
-    set_colours(band, options.classes);
-  if (!source.band_description.empty()) GDALSetDescription(band, source.band_description.c_str());
+  describe_dataset(memory.get(), dem.ref, type,
+                   cells.nodata ? std::optional(double(*cells.nodata)) : std::nullopt, source,
+                   options);
 
   GdalProgress progress(run, "writing");
   const auto list = creation_options(GDALGetDriverShortName(driver), type, options, run);

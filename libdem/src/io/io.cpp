@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "dem/geodesy.h"
+#include "dem/raster_stream.h"
 #include "gdal_raster.h"
 #include "heightmap.h"
 #include "hgt.h"
@@ -28,6 +29,8 @@ void check_not_empty(const std::string& path) {
 }
 
 }  // namespace
+
+bool reads_by_parts(const std::string& path) { return !is_hgt_name(path) && !is_image_name(path); }
 
 DemFile read_dem(const std::string& path, const ReadOptions& options, const Run& run) {
   const bool grey = options.heights || options.unknown_grey;

@@ -117,6 +117,13 @@ std::vector<NodataEvidence> NodataSearch::evidence() const {
   return list;
 }
 
+std::vector<double> NodataSearch::undeclared() const {
+  std::vector<double> values;
+  for (const Sentinel& s : sentinels_)
+    if (s.used()) values.push_back(s.value);
+  return values;
+}
+
 template void NodataSearch::scan_row(std::span<float>, std::span<std::uint8_t>);
 template void NodataSearch::scan_row(std::span<double>, std::span<std::uint8_t>);
 template void NodataSearch::clear_sentinels(std::span<float>, std::span<std::uint8_t>);

@@ -32,6 +32,7 @@ class NodataSearch {
 
   std::optional<double> value() const { return value_; }  ///< the one that stands for "unknown"
   std::vector<NodataEvidence> evidence() const;
+  std::vector<double> undeclared() const;  ///< values that clear_sentinels() takes as unknown
 
  private:
   struct Sentinel {
