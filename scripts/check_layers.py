@@ -13,7 +13,7 @@ import tempfile
 LAYERS = {
     "values": ["canvas", "dem", "fields", "raster", "run"],
     "helpers": ["flood", "gradient", "parallel", "paths", "random", "vectorised"],  # private: for any algorithm
-    "algorithms": ["baseline", "draw", "evaluate", "holes", "mcmd", "networks", "noise", "outliers", "points",
+    "algorithms": ["baseline", "contours", "draw", "evaluate", "holes", "mcmd", "networks", "noise", "outliers", "points",
                    "raytrace", "sample", "spline"],
     "methods": ["generators", "gridding", "methods"],
     "io": ["baselines", "cells", "crs", "gdal_raster", "gdal_support", "geodesy", "heightmap", "hgt", "image", "io",
@@ -30,9 +30,9 @@ PARTS = {
     "spline": ["grid", "multigrid", "overshoot", "spline_parameters", "spline_sample", "spline_solver", "springs", "tensor"],
 }
 
-# The algorithms that call another: the spline's solver starts from MCMD's surface, and generators
-# end with it.
-CALLS = {("spline", "mcmd"), ("spline_parameters", "mcmd"), ("networks", "mcmd")}
+# The algorithms that call another: the spline's solver starts from MCMD's surface, generators end
+# with it, and the surface between contour lines is a spline that is held within bounds.
+CALLS = {("spline", "mcmd"), ("spline_parameters", "mcmd"), ("networks", "mcmd"), ("contours", "spline")}
 
 # The layers that each layer may include. Algorithms do not include each other: they compose
 # through data.
