@@ -13,8 +13,8 @@ import tempfile
 LAYERS = {
     "values": ["canvas", "dem", "fields", "palette", "raster", "river", "run"],
     "helpers": ["flood", "gradient", "parallel", "paths", "random", "vectorised"],  # private: for any algorithm
-    "algorithms": ["baseline", "draw", "erosion", "evaluate", "faults", "holes", "mcmd", "networks", "noise",
-                   "outliers", "points", "raytrace", "riverland", "sample", "sketch", "spline"],
+    "algorithms": ["baseline", "contours", "draw", "erosion", "evaluate", "faults", "holes", "mcmd", "networks",
+                   "noise", "outliers", "points", "raytrace", "riverland", "sample", "sketch", "spline"],
     "methods": ["generators", "gridding", "methods"],
     "io": ["aligned_reader", "baselines", "cells", "crs", "gdal_raster", "gdal_support", "geodesy", "heightmap", "hgt",
            "image", "io", "las", "lattices", "nodata", "ogr_layers", "oiio_support", "point_files", "point_reading",
@@ -33,11 +33,10 @@ PARTS = {
     "sketch": ["lsystem"],
 }
 
-# The algorithms that call another: the spline's solver starts from MCMD's surface, and generators
-# end with it.
-CALLS = {("spline", "mcmd"), ("roughness", "mcmd"), ("spline_parameters", "mcmd"), ("roughness", "mcmd"), ("networks", "mcmd")}
-CALLS = {("spline", "mcmd"), ("roughness", "mcmd"), ("spline_parameters", "mcmd"), ("networks", "mcmd"), ("riverland_relief", "mcmd"),
-         ("sketch", "mcmd"), ("lsystem", "mcmd")}
+# The algorithms that call another: the spline's solver starts from MCMD's surface, generators end
+# with it, and the surface between contour lines is a spline that is held within bounds.
+CALLS = {("spline", "mcmd"), ("spline_parameters", "mcmd"), ("roughness", "mcmd"), ("networks", "mcmd"),
+         ("riverland_relief", "mcmd"), ("sketch", "mcmd"), ("lsystem", "mcmd"), ("contours", "spline")}
 
 # The layers that each layer may include. Algorithms do not include each other: they compose
 # through data.

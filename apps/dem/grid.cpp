@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "dem/baselines.h"
+#include "dem/contours.h"
 #include "dem/gridding.h"
 #include "dem/lattices.h"
 #include "dem/point_files.h"
@@ -22,10 +23,10 @@ const std::vector<std::pair<std::string, Combine>> kCombine{{"mean", Combine::me
 struct Options {
   std::string points, out, sigma;
   std::string like, bounds, cell;
-  std::string method{default_fill_method()};
+  std::string method;  // "": chosen by what the points are
   std::string delimiter;
   std::vector<std::string> set;
-  bool nodes = false, snap = false, no_fill = false;
+  bool nodes = false, snap = false, no_fill = false, contours = false;
   PointReadOptions read;
   BinOptions bin;
   GriddingOptions gridding;
@@ -52,6 +53,10 @@ void check_options(const Options& o) {
   if (o.nodes && o.bounds.empty()) throw std::invalid_argument("--nodes is for --bounds");
   if (o.no_fill && !o.sigma.empty())
     throw std::invalid_argument("--no-fill leaves nothing to be uncertain about: no --sigma");
+  if (o.contours && o.like.empty() && o.cell.empty())
+    throw std::invalid_argument("--contours needs --cell, e.g. --cell 30m, or --like");
+  if (o.contours && o.bin.outliers > 0)
+    throw std::invalid_argument("--reject-outliers is for points, not for --contours");
   if (!o.bounds.empty()) parse_bounds(o.bounds);
   if (!o.cell.empty()) parse_cell_size(o.cell);
 }
@@ -77,6 +82,7 @@ void append(Points& all, const Points& part) {
 struct Read {
   PointSource source;
   Binned binned;
+  Dem lines;  // levels of contour lines, in the cells that they pass
   Extent extent;
   std::string lattice_from;
 };
@@ -97,6 +103,55 @@ Lattice chosen_lattice(const Options& o, const Extent& extent, const std::string
   if (!(bounds.west < bounds.east && bounds.south < bounds.north))
     throw std::invalid_argument("the points cover no area; give --bounds");
   return lattice_over(bounds, parse_cell_size(o.cell), crs, o.nodes || o.bounds.empty());
+}
+
+/// Points so close along contour lines that the lines cross no cell unseen; `vertices` has what a
+/// first reading found, in the lattice's system.
+double spacing_along_lines(const Options& o, const Lattice& lattice, const Extent& vertices,
+                           const Run& run) {
+  constexpr double part_of_cell = 0.4;
+  PointReadOptions as_they_are = o.read;
+  as_they_are.to_crs.clear();
+  Extent own;
+  read_points(
+      o.points, as_they_are, [&](const Points& part) { own.add(part.x, part.y); }, run);
+  const auto& at = lattice.ref.to_world;
+  const double along_x = std::abs(at[1]) * (own.east - own.west) / (vertices.east - vertices.west);
+  const double along_y =
+      std::abs(at[5]) * (own.north - own.south) / (vertices.north - vertices.south);
+  const double spacing = part_of_cell * std::min(along_x, along_y);
+  if (!(spacing > 0) || !std::isfinite(spacing)) throw IoError(o.points, "its lines cover no area");
+  return spacing;
+}
+
+/// Contour lines on a lattice: each cell that a line passes has its level, and a height at its centre.
+Read read_contours(const Options& o, const Run& run) {
+  Read read;
+  PointReadOptions options = o.read;
+  auto lattice = given_lattice(o, run.part(0, 0.05));
+  if (lattice && !lattice->ref.crs_wkt.empty()) options.to_crs = lattice->ref.crs_wkt;
+  Extent vertices;
+  const PointSource first = read_points(
+      o.points, options, [&](const Points& part) { vertices.add(part.x, part.y); },
+      run.part(0.05, 0.2));
+  if (first.format == "text" || first.format.starts_with("LAS"))
+    throw IoError(o.points, "has points; --contours needs a vector layer of lines");
+  if (!lattice) lattice = chosen_lattice(o, vertices, first.crs_wkt);
+  options.along_lines = spacing_along_lines(o, *lattice, vertices, run.part(0.2, 0.3));
+  PointBins levels(*lattice, {.combine = Combine::median, .plane = false});
+  PointBins heights(*lattice, {.plane = o.bin.plane});
+  const Run quiet{run.threads, {}};
+  const auto sink = [&](const Points& part) {
+    levels.add(part, quiet);
+    heights.add(part, quiet);
+  };
+  read.source = read_points(o.points, options, sink, run.part(0.3, 0.8));
+  read.extent = vertices;
+  read.lattice_from = o.like.empty() ? "as asked for" : "as " + o.like;
+  read.lines = levels.finish(run.part(0.8, 0.9)).dem;
+  read.binned = heights.finish(run.part(0.9, 1));
+  read.binned.counts.duplicates = 0;  // lines that share a cell
+  return read;
 }
 
 /// Reads the points into bins. They are kept in memory only while the lattice depends on them.
@@ -212,16 +267,26 @@ void write_outputs(const Options& o, const Dem& dem, const Raster<float>& sigma,
   write_dem(o.out, dem, source, write, run.part(0.4, 1));
 }
 
+/// Contour lines by their own method have their levels as bounds; all else goes through its points.
+Gridded fill(const Options& o, const Read& read, const ChosenMethod& method, const Run& run) {
+  if (!o.contours || method.method->name != "contours")
+    return fill_points(read.binned, method, o.gridding, run);
+  ContourOptions options;
+  apply(method.settings, fields(options));
+  return {fill_contours(read.lines, read.binned.dem.z, options, run), {}};
+}
+
 int grid(Options& o, Shell& shell) {
   check_options(o);
   if (!o.delimiter.empty()) o.read.delimiter = parse_delimiter(o.delimiter);
   o.bin.plane = !o.snap;
+  if (o.method.empty()) o.method = o.contours ? "contours" : std::string(default_fill_method());
   const ChosenMethod method = choose(o);
   check_writable(o.out, shell.overwrite);
   if (!o.sigma.empty()) check_writable(o.sigma, shell.overwrite);
 
   const Run run = shell.run();
-  Read read = read_into_bins(o, run.part(0, 0.4));
+  Read read = o.contours ? read_contours(o, run.part(0, 0.4)) : read_into_bins(o, run.part(0, 0.4));
   check_on_lattice(o, read);
   say_what_was_read(o, read, shell);
   Json json = as_json(read);
@@ -232,7 +297,7 @@ int grid(Options& o, Shell& shell) {
   if (!o.no_fill) {
     if (o.snap) read.binned.off_centre.clear();
     const auto start = std::chrono::steady_clock::now();
-    Gridded gridded = fill_points(read.binned, method, o.gridding, run.part(0.4, 0.9));
+    Gridded gridded = fill(o, read, method, run.part(0.4, 0.9));
     const double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     dem.z = std::move(gridded.filled.z);
@@ -309,7 +374,7 @@ void add_grid(CLI::App& app, Shell& shell) {
   auto* verb = add_verb(
       app, shell, "grid", "Scattered points to a DEM; the surface passes through them",
       "  dem grid soundings.csv sea.tif                        # cells from the points' density\n"
-      "  dem grid survey.gpkg dem.tif --cell 5m --z-field height\n"
+      "  dem grid map.gpkg dem.tif --contours --cell 10m --z-field height\n"
       "  dem grid lidar.las ground.tif --class 2 --cell 1m --combine median\n"
       "  zcat p.xyz.gz | dem grid - dem.tif --crs EPSG:4326 --to-crs EPSG:32632 --cell 30m",
       [o, &shell] { return grid(*o, shell); });
@@ -319,9 +384,10 @@ void add_grid(CLI::App& app, Shell& shell) {
   verb->add_option("OUT", o->out, "the DEM; the format follows the extension")
       ->required()
       ->type_name("");
-  verb->add_option("-m,--method", o->method, "how to fill between points (see dem methods)")
-      ->type_name("NAME")
-      ->capture_default_str();
+  verb->add_option("-m,--method", o->method,
+                   "how to fill between points (see dem methods); spline, or contours")
+      ->type_name("NAME");
+  verb->add_flag("--contours", o->contours, "POINTS are contour lines: no terraces between them");
   verb->add_option("-s,--set", o->set, "a setting of the method; may be repeated")
       ->allow_extra_args(false)
       ->type_name("KEY=VALUE");

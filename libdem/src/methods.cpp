@@ -7,6 +7,7 @@
 
 #include "dem/baseline.h"
 #include "dem/faults.h"
+#include "dem/contours.h"
 #include "dem/generators.h"
 #include "dem/mcmd.h"
 #include "dem/networks.h"
@@ -163,6 +164,12 @@ const std::vector<FillMethod>& fill_methods() {
              {"fourth_order", "false"},
              {"adaptive", "false"}}}},
           [](const Dem& d, const SplineOptions& o, const Run& r) { return fill_spline(d, o, r); }),
+      make_method<ContourOptions>(
+          "contours",
+          "the spline held between contour lines: no terraces, hills beyond the last line", "", {},
+          [](const Dem& d, const ContourOptions& o, const Run& r) {
+            return fill_contours(d, o, r);
+          }),
       make_method<MdiOptions>("mdi",
                               "Midpoint Displacement's Inverse with its noise, then plain MD",
                               "belhadj2005", {}, fill_mdi),

@@ -1,6 +1,7 @@
 """What `dem grid` promises: points of any kind to a DEM, and one line for what is wrong."""
 
 import json
+import math
 
 from support import CliTest, asc_text, main
 
@@ -77,6 +78,40 @@ class Grid(CliTest):
         self.points()
         self.succeeds("grid", "p.csv", "g.asc", "--cell", "10m", "--sigma", "s.asc")
         self.assertTrue(all(0 <= s < 50 for row in self.heights("s.asc") for s in row))
+
+
+class Contours(CliTest):
+    def lines(self, name="c.geojson"):
+        """Circles around (500, 500): a cone of 1 m in 5, with a line every 20 m."""
+        features = []
+        for level in range(20, 100, 20):
+            radius = 5 * (100 - level)
+            ring = [[500 + radius * math.cos(a / 30), 500 + radius * math.sin(a / 30)] for a in range(190)]
+            features.append({"type": "Feature", "properties": {"height": level},
+                             "geometry": {"type": "LineString", "coordinates": ring}})
+        return self.write(name, json.dumps({"type": "FeatureCollection", "features": features}))
+
+    def test_the_surface_between_lines_has_no_terraces(self):
+        self.lines()
+        grid = ["grid", "c.geojson", "g.asc", "--contours", "--crs", "EPSG:32632", "--bounds", "0,0,1000,1000"]
+        facts = json.loads(self.succeeds(*grid, "--cell", "10m", "--json").stdout)
+        self.assertEqual((facts["cols"], facts["rows"], facts["method"]), (100, 100, "contours"))
+        rows = [line.split() for line in self.read("g.asc").decode().splitlines() if line[0] not in "ncxydN"]
+        for r in range(100):
+            for c in range(100):
+                distance = math.hypot(5 + 10 * c - 500, 995 - 10 * r - 500)
+                if 120 < distance < 380:
+                    self.assertAlmostEqual(float(rows[r][c]), 100 - distance / 5, delta=2)
+        self.assertTrue(83 < float(rows[50][50]) < 100)  # above the last line, below the next
+
+    def test_what_they_need(self):
+        self.write("p.csv", csv([(1, 2, 3), (5, 9, 3)]))
+        self.fails(1, "grid", "p.csv", "g.tif", "--contours", says=["--contours needs --cell"])
+        self.fails(2, "grid", "p.csv", "g.tif", "--contours", "--cell", "1m", says=["vector layer of lines"])
+        flat = {"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {"name": "a"}, "geometry": {
+            "type": "LineString", "coordinates": [[8, 46], [9, 47]]}}]}
+        self.write("n.geojson", json.dumps(flat))
+        self.fails(2, "grid", "n.geojson", "g.tif", "--contours", "--cell", "1s", says=["has no elevations", "--z-field"])
 
 
 class BadInput(CliTest):

@@ -22,9 +22,11 @@ struct PointReadOptions {
   /// in degrees, minutes, seconds.
   std::string position_field{};
   std::optional<char> delimiter{};  ///< of text; default: the first of tab ; | , or spaces it has
-  std::string layer{};              ///< of a vector file; "": the only one
-  std::vector<int> classes{};       ///< of LAS points; empty: all but withheld ones
-  std::optional<double> nodata{};   ///< a z that means none
+  /// Lines of a vector layer get points this far apart, in the file's units; 0: their vertices.
+  double along_lines = 0;
+  std::string layer{};             ///< of a vector file; "": the only one
+  std::vector<int> classes{};      ///< of LAS points; empty: all but withheld ones
+  std::optional<double> nodata{};  ///< a z that means none
   /// What x and y are in ("EPSG:25832", PROJ or WKT); overrides what the file says.
   std::string crs{};
   /// What x and y are brought to; "": they stay as they are. Points without any system are taken

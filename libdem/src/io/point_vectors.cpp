@@ -16,24 +16,55 @@
 namespace dem {
 namespace {
 
+struct Vertex {
+  double x, y, z;
+  bool finite() const { return std::isfinite(x) && std::isfinite(y) && std::isfinite(z); }
+};
+
+/// How the vertices of a feature become points.
+struct Taking {
+  double height;       // of all vertices; NaN: none
+  bool height_is_set;  // else each vertex has its own
+  double spacing;      // along lines; 0: vertices only
+};
+
+void add_point(const Vertex& v, std::size_t& without_z, Points& points) {
+  if (!v.finite()) {
+    ++without_z;
+    return;
+  }
+  points.x.push_back(v.x);
+  points.y.push_back(v.y);
+  points.z.push_back(float(v.z));
+}
+
+/// Points between two vertices of a line.
+void add_between(const Vertex& a, const Vertex& b, double spacing, Points& points) {
+  const double steps = std::ceil(std::hypot(b.x - a.x, b.y - a.y) / spacing);
+  for (double i = 1; i < steps; ++i) {
+    const double t = i / steps;
+    points.x.push_back(a.x + t * (b.x - a.x));
+    points.y.push_back(a.y + t * (b.y - a.y));
+    points.z.push_back(float(a.z + t * (b.z - a.z)));
+  }
+}
+
 /// All vertices of a geometry, of its parts too.
-void add_vertices(OGRGeometryH geometry, double height, bool from_field, std::size_t& without_z,
+void add_vertices(OGRGeometryH geometry, const Taking& how, std::size_t& without_z,
                   Points& points) {
   for (int i = 0; i < OGR_G_GetGeometryCount(geometry); ++i)
-    add_vertices(OGR_G_GetGeometryRef(geometry, i), height, from_field, without_z, points);
+    add_vertices(OGR_G_GetGeometryRef(geometry, i), how, without_z, points);
   const OGRwkbGeometryType type = OGR_GT_Flatten(OGR_G_GetGeometryType(geometry));
   if (type != wkbPoint && type != wkbLineString) return;
+  Vertex last{};
   for (int i = 0; i < OGR_G_GetPointCount(geometry); ++i) {
-    double x = 0, y = 0, z = 0;
-    OGR_G_GetPoint(geometry, i, &x, &y, &z);
-    if (from_field) z = height;
-    if (!std::isfinite(x) || !std::isfinite(y) || !std::isfinite(z)) {
-      ++without_z;
-      continue;
-    }
-    points.x.push_back(x);
-    points.y.push_back(y);
-    points.z.push_back(float(z));
+    Vertex v{};
+    OGR_G_GetPoint(geometry, i, &v.x, &v.y, &v.z);
+    if (how.height_is_set) v.z = how.height;
+    if (i > 0 && how.spacing > 0 && last.finite() && v.finite())
+      add_between(last, v, how.spacing, points);
+    add_point(v, without_z, points);
+    last = v;
   }
 }
 
@@ -76,7 +107,7 @@ void read_vector_points(const std::string& path, const PointReadOptions& options
     }
     double height = z_field < 0 ? 0 : number_in(feature, z_field);
     if (options.nodata == height && z_field >= 0) height = no_number;
-    add_vertices(geometry, height, z_field >= 0, source.without_z, points);
+    add_vertices(geometry, {height, z_field >= 0, options.along_lines}, source.without_z, points);
     if (sigma_field >= 0)
       points.sigma.resize(points.size(), float(number_in(feature, sigma_field)));
     if (weight_field >= 0)
