@@ -62,10 +62,11 @@ std::vector<Field> fields(SplineOptions& options);
 /// Gives:    all finite; known cells bit for bit (unless smooth_known). The report tells iterations,
 ///           estimated_error, residual, the parameters used, and `converged` (1 or 0).
 /// Exact on: constants; planes, to rounding.
-/// Sigma:    from surfaces drawn from the springs' distribution, scaled by the energy of the result
-///           per known cell and, with automatic parameters, by the errors of hidden known cells:
+/// Sigma:    from surfaces drawn from the springs' distribution, scaled by the roughness of the
+///           place (the result's second differences at known cells around), by the energy of the
+///           result per known cell and, with automatic parameters, by the errors of hidden known cells:
 ///           72 % of them lie within one sigma (figures inside_1_sigma, inside_2_sigma).
-/// Cost:     O(cells), about 40 bytes a cell beside the result, 24 more when adaptive. Any number
+/// Cost:     O(cells), about 40 bytes a cell beside the result, 12 more when adaptive. Any number
 ///           of threads gives the same bits.
 /// Throws:   std::invalid_argument, Cancelled.
 Filled fill_spline(const Dem& dem, const SplineOptions& options = {}, const Run& run = {});
