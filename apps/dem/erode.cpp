@@ -101,7 +101,7 @@ int run_erode(const Options& o, Shell& shell) {
     write.metadata = {{"DEM_EROSION", settings_text(o.set)}, {"DEM_VERSION", DEM_VERSION}};
   write_dem(o.out, {eroded.z, file.dem.known, file.dem.ref, file.dem.spacing}, source, write,
             run.part(0.9, 1));
-  report(o, options, eroded, file.dem.size().cells(), seconds, shell);
+  report(o, options, eroded, count(file.dem.known), seconds, shell);
   return kDone;
 }
 

@@ -3,7 +3,7 @@
 
 import json
 
-from support import CliTest, main
+from support import CliTest, asc_text, main
 
 
 class Erode(CliTest):
@@ -52,7 +52,7 @@ class Erode(CliTest):
         ]:
             with self.subTest(says):
                 self.fails(1, "erode", "hills.tif", "out.tif", *arguments, says=[says])
-        self.write("void.asc", "ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -9999\n-9999 nan\n")
+        self.write("void.asc", asc_text([[-9999, -9999]]))
         self.fails(2, "erode", "void.asc", "out.tif", says=["no known cell"])
         self.assert_files("hills.tif", "void.asc")
 
