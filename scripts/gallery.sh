@@ -12,18 +12,18 @@ largest=40960  # bytes of one picture
 
 rows() {
   cat <<'ROWS'
-noise|Noise|Sums of noise [musgrave1989]|dem generate noise noise.tif --size 320 --cell 60
-foothills|Foothills|Rough where high, smooth where low|dem generate noise:foothills foothills.tif --size 320 --cell 80 --seed 3
-range|A range|The same along a winding ridge|dem generate noise:range range.tif --size 320 --cell 60 --seed 3
-ridged|Crests|The ridged multifractal|dem generate noise:ridged ridged.tif --size 320 --cell 60
-hybrid|Peaks|The hybrid multifractal|dem generate noise:hybrid hybrid.tif --size 320 --cell 80
-dimension|From smooth to rough|Fractal dimension 2 in the west, 3 in the east|dem generate noise:dimension dimension.tif --size 320 --cell 80
-warped|Folds|Places displaced by noise|dem generate noise:warped warped.tif --size 320 --cell 80
-faults|Faults|10 000 straight faults [faulting1996]|dem generate faults faults.tif --size 320 --cell 100
+noise|Noise|Sums of noise [musgrave1989]|dem generate noise noise.tif --size 288 --cell 60
+foothills|Foothills|Rough where high, smooth where low|dem generate noise:foothills foothills.tif --size 288 --cell 80 --seed 3
+range|A range|The same along a winding ridge|dem generate noise:range range.tif --size 288 --cell 60 --seed 3
+ridged|Crests|The ridged multifractal|dem generate noise:ridged ridged.tif --size 288 --cell 60
+hybrid|Peaks|The hybrid multifractal|dem generate noise:hybrid hybrid.tif --size 288 --cell 80
+dimension|From smooth to rough|Fractal dimension 2 in the west, 3 in the east|dem generate noise:dimension dimension.tif --size 288 --cell 80
+warped|Folds|Places displaced by noise|dem generate noise:warped warped.tif --size 288 --cell 80
+faults|Faults|10 000 straight faults [faulting1996]|dem generate faults faults.tif --size 288 --cell 100
 globe|A planet|5 000 great circles, in EPSG:4326|dem generate globe globe.tif --size 512x256
-collage|Collage|10 000 elliptical humps and hollows|dem generate collage collage.tif --size 320 --cell 80
-discs|Discs|20 000 flat discs|dem generate collage:discs discs.tif --size 320 --cell 80
-craters|Craters|1 500 pits H F / (F + x² + y²)|dem generate collage:craters craters.tif --size 320 --cell 60
+collage|Collage|10 000 elliptical humps and hollows|dem generate collage collage.tif --size 288 --cell 80
+discs|Discs|20 000 flat discs|dem generate collage:discs discs.tif --size 288 --cell 80
+craters|Craters|1 500 pits H F / (F + x² + y²)|dem generate collage:craters craters.tif --size 288 --cell 60
 eroded|Eroded noise|2 000 steps of rain, rivers and falling rock on the noise above [musgrave1989]|dem erode noise.tif eroded.tif -s steps=2000
 eroded-ridged|Eroded crests|The same on the crests|dem erode ridged.tif eroded-ridged.tif -s steps=1000
 canyon|A valley|Positive noise weighted by the distance from a winding line (the paper's plate 9, before)|dem generate noise:canyon canyon.tif --size 257

@@ -6,10 +6,14 @@
 namespace dem {
 namespace {
 
+// A third of the bytes of the library's own 98, and no difference to the eye.
+constexpr int kJpegQuality = 85;
+
 void write_bytes(const std::string& path, Size size, int channels, const void* bytes,
                  bool overwrite) {
   if (size.cells() == 0) throw IoError(path, "a picture of no pixels cannot be written");
-  const OIIO::ImageSpec spec(size.cols, size.rows, channels, OIIO::TypeDesc::UINT8);
+  OIIO::ImageSpec spec(size.cols, size.rows, channels, OIIO::TypeDesc::UINT8);
+  spec.attribute("CompressionQuality", kJpegQuality);
   write_pixels(path, spec, bytes, overwrite, {});
 }
 
