@@ -16,7 +16,7 @@ LAYERS = {
     "algorithms": ["baseline", "contours", "draw", "erosion", "evaluate", "faults", "holes", "mcmd", "networks",
                    "noise", "outliers", "points", "raytrace", "riverland", "sample", "sketch", "spline"],
     "methods": ["generators", "gridding", "methods"],
-    "io": ["aligned_reader", "baselines", "cells", "crs", "gdal_raster", "gdal_support", "geodesy", "heightmap", "hgt",
+    "io": ["aligned_reader", "baselines", "cells", "crs", "drawing", "gdal_raster", "gdal_support", "geodesy", "heightmap", "hgt",
            "image", "io", "las", "lattices", "nodata", "ogr_layers", "oiio_support", "point_files", "point_reading",
            "point_text", "point_vectors", "polygons", "raster_stream", "staged_file"],
 }

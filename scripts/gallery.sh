@@ -4,7 +4,7 @@
 #   scripts/gallery.sh          with build/release/apps/dem/dem, or the program that DEM names
 #
 # A picture is one row below: file, heading, what it shows, the command. The command reads and
-# writes DEMs in an empty folder, in which those of the rows before it lie.
+# writes DEMs in a folder with the drawings of testdata/, in which those of the rows before it lie.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 dem=$(realpath "${DEM:-build/release/apps/dem/dem}")
@@ -28,12 +28,23 @@ eroded|Eroded noise|2 000 steps of rain, rivers and falling rock on the noise ab
 eroded-ridged|Eroded crests|The same on the crests|dem erode ridged.tif eroded-ridged.tif -s steps=1000
 canyon|A valley|Positive noise weighted by the distance from a winding line (the paper's plate 9, before)|dem generate noise:canyon canyon.tif --size 257
 canyon-eroded|The valley after 2 000 steps|The paper's plate 9, after: there in 4 hours|dem erode canyon.tif canyon-eroded.tif -s steps=2000
+ridges|Ridges and rivers|Grown from particles, and MCMD around them [belhadj2005, belhadj2007]|dem generate ridges ridges.tif --size 256 --cell 75
+ridges-mdi|The same by MDI|As published in 2005: the inverse, then midpoint displacement|dem generate ridges:mdi ridges-mdi.tif --size 256 --cell 75
+skeleton|Drawn ridges and rivers|MCMD around the lines of a vector layer|dem generate skeleton lines.geojson skeleton.tif --size 320 --cell 60
+riverland|An island of rivers|RiverLand [teoh2009]: rivers first, and every cell drains|dem generate riverland riverland.tif --size 256 --cell 75
+river-cliffs|River and coast cliffs|The same with another slope profile|dem generate riverland:cliffs river-cliffs.tif --size 256 --cell 75 --seed 2
+terraces|Terraces|And another|dem generate riverland:terraces terraces.tif --size 256 --cell 75 --seed 3
+painted|Painted land|RiverLand on a vector layer's land, with a patch of rocky outcrops|dem generate painted_land island.geojson painted.tif --size 320 --cell 60
+lsystem|An L-system|The path of the 2007 paper's footnote, figure 11 (b)|dem generate lsystem lsystem.tif --size 256 --cell 5
+bumped|A sketch, bumped|A line drawing with the bends of figure 12 (a)|dem generate sketch:bumped star.geojson bumped.tif --size 320 --cell 60
+wall|A painted wall|1 % of noise, two median filters: figure 13|dem generate sketch:wall star.geojson wall.tif --size 256 --cell 75 --median 2
 ROWS
 }
 
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 mkdir -p gallery
+cp testdata/*.geojson "$work"
 {
   echo "# Gallery"
   echo

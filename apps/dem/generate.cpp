@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "dem/drawing.h"
 #include "dem/generators.h"
 #include "dem/geodesy.h"
 #include "verbs.h"
@@ -19,6 +20,7 @@ struct Options {
   std::string size, cell, crs, origin, format;
   std::optional<std::uint64_t> seed;
   std::vector<std::string> set;
+  int median = 0;
 };
 
 /// "A" or "A<separator>B" as two numbers.
@@ -93,6 +95,7 @@ Raster<float> read_image(const Options& o, const Generator& generator, const Run
   if (o.files.size() != 2)
     throw std::invalid_argument(fmt::format("{} needs an image: dem generate {} IMAGE OUT ({})",
                                             generator.name, generator.name, generator.image));
+  if (is_vector_file(o.files[0])) return {};  // drawn on the canvas later
   ReadOptions grey;
   grey.heights = {0, 1};
   return read_dem(o.files[0], grey, run).dem.z;
@@ -133,13 +136,15 @@ int generate(const Options& o, Shell& shell) {
   const std::string& out = o.files.back();
   check_writable(out, shell.overwrite);
   const Run run = shell.run();
-  const Raster<float> image = read_image(o, *chosen.generator, run.part(0, 0.1));
+  Raster<float> image = read_image(o, *chosen.generator, run.part(0, 0.1));
   const Size size = canvas_size(o, *chosen.generator, image);
   const Canvas canvas = chosen.generator->globe ? globe(o, size) : plane(o, size);
   check_canvas(canvas);
+  if (!chosen.generator->image.empty() && image.empty()) image = draw_vectors(o.files[0], canvas);
 
   const auto start = std::chrono::steady_clock::now();
-  const Dem dem = chosen.generator->generate(canvas, image, chosen.settings, run.part(0.1, 0.8));
+  Dem dem = chosen.generator->generate(canvas, image, chosen.settings, run.part(0.1, 0.7));
+  dem.z = median_filter(dem.z, 5, o.median, run.part(0.7, 0.8));
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
@@ -186,13 +191,15 @@ void add_generate(CLI::App& app, Shell& shell) {
       "  dem generate noise hills.tif\n"
       "  dem generate noise:foothills range.tif --size 2049 --cell 10 --seed 7\n"
       "  dem generate noise part.tif --size 512 --crs EPSG:32619 --origin 305000,4910000 -s H=0.9\n"
+      "  dem generate sketch:wall drawing.png wall.tif --median 2\n"
+      "  dem generate skeleton lines.gpkg land.tif --size 800 --origin 305000,4910000\n"
       "Generators: " +
           generator_names() + " (their settings: dem methods NAME)",
       [o, &shell] { return generate(*o, shell); });
   verb->add_option("NAME", o->name, "what to make, NAME or NAME:PRESET")->required()->type_name("");
   verb->add_option("FILES", o->files,
-                   "[IMAGE] OUT: the DEM to write, and before it the image that\n"
-                   "some generators start from")
+                   "[IMAGE] OUT: the DEM to write, and before it the image or vector\n"
+                   "layer that some generators start from")
       ->required()
       ->type_name("");
   verb->add_option("--size", o->size, "columns and rows; else 1025, or the image's")
@@ -210,6 +217,9 @@ void add_generate(CLI::App& app, Shell& shell) {
   verb->add_option("-s,--set", o->set, "a setting of the generator; may be repeated")
       ->allow_extra_args(false)
       ->type_name("KEY=VALUE");
+  verb->add_option("--median", o->median, "passes of a 5 x 5 median over the result; else none")
+      ->check(CLI::Range(0, 100))
+      ->type_name("N");
   verb->add_option("--format", o->format, "GDAL driver name, HGT or image; else by extension")
       ->type_name("NAME");
 }

@@ -133,6 +133,14 @@ Valleys find_valleys(const Country& country, const Water& water, const RiverLand
   // in whatever order.
   const double least_step = std::min(country.cell.dx_m, country.cell.dy_m);
   const auto width = float(0.999 * o.slope * (1 - o.slope_variation) * least_step);
+  struct Step {
+    int dc, dr;
+    float length;
+  };
+  const auto side = float(country.cell.dx_m), up = float(country.cell.dy_m),
+             diagonal = float(country.step_m(1, 1));
+  const Step steps[] = {{-1, 0, side},      {1, 0, side},      {0, -1, up},       {0, 1, up},
+                        {-1, -1, diagonal}, {1, -1, diagonal}, {-1, 1, diagonal}, {1, 1, diagonal}};
   std::vector<std::vector<std::int32_t>> buckets;
   const auto push = [&](float rise, std::int32_t index) {
     const auto b = std::size_t(rise / width);
@@ -142,6 +150,7 @@ Valleys find_valleys(const Country& country, const Water& water, const RiverLand
   for (int row = 0; row < size.rows; ++row)
     for (int col = 0; col < size.cols; ++col) {
       const bool wet = water.wet(col, row) != 0;
+      if (!country.is_land({col, row})) v.rise(col, row) = 0;  // no way leads there
       if (!wet && !country.coast(col, row)) continue;
       v.rise(col, row) = 0;
       v.foot(col, row) = wet ? water.level(col, row) : 0;
@@ -149,26 +158,35 @@ Valleys find_valleys(const Country& country, const Water& water, const RiverLand
       v.toward(col, row) = row * size.cols + col;
       push(0, row * size.cols + col);
     }
+
+  float* const rise = v.rise.cells().data();
+  float* const foot = v.foot.cells().data();
+  float* const slope = v.slope.cells().data();
+  std::int32_t* const toward = v.toward.cells().data();
   Mask final(size);
   for (std::size_t b = 0; b < buckets.size(); ++b) {
     run.report(double(v.order.size()) / double(size.cells()), "valleys");
     const std::vector<std::int32_t> bucket = std::move(buckets[b]);
-    for (std::int32_t index : bucket) {
-      const int col = index % size.cols, row = index / size.cols;
-      if (std::exchange(final(col, row), 1)) continue;  // a shorter way was found since
-      v.order.push_back(index);
-      const float rise = v.rise(col, row), slope = v.slope(col, row), foot = v.foot(col, row);
-      for_land_around(country, col, row, [&](int c, int r, float step) {
-        const float there = rise + slope * step;
-        if (there >= v.rise(c, r)) return;
-        v.rise(c, r) = there;
-        v.foot(c, r) = foot;
-        v.slope(c, r) = slope;
-        v.toward(c, r) = index;
-        push(there, r * size.cols + c);
-      });
+    for (std::int32_t i : bucket) {
+      if (std::exchange(final.cells()[std::size_t(i)], 1)) continue;  // a shorter way was found
+      v.order.push_back(i);
+      foot[i] = foot[toward[i]];
+      slope[i] = slope[toward[i]];
+      const int col = i % size.cols, row = i / size.cols;
+      for (const auto& [dc, dr, step] : steps) {
+        if (col + dc < 0 || row + dr < 0 || col + dc >= size.cols || row + dr >= size.rows)
+          continue;
+        const std::int32_t n = i + dr * size.cols + dc;
+        const float there = rise[i] + slope[i] * step;
+        if (there >= rise[n]) continue;
+        rise[n] = there;
+        toward[n] = i;
+        push(there, n);
+      }
     }
   }
+  for (std::size_t i = 0; i < v.rise.cells().size(); ++i)
+    if (!country.painted.land.cells()[i]) v.rise.cells()[i] = far_away;
   return v;
 }
 

@@ -1,0 +1,126 @@
+#include "dem/drawing.h"
+
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imagebufalgo.h>
+#include <fmt/format.h>
+#include <gdal_alg.h>
+#include <ogr_api.h>
+
+#include <map>
+#include <stdexcept>
+#include <vector>
+
+#include "dem/io.h"
+#include "gdal_support.h"
+#include "ogr_layers.h"
+#include "oiio_support.h"
+
+namespace dem {
+namespace {
+
+const std::map<std::string, double> greys{
+    {"ridge", 0.75}, {"river", 0.25}, {"land", 1}, {"rocks", 0.5}, {"sea", 0}};
+
+DatasetPtr open(const std::string& path, unsigned kind) {
+  register_gdal();
+  const GdalErrors quiet;
+  return DatasetPtr(GDALOpenEx(path.c_str(), kind | GDAL_OF_READONLY, nullptr, nullptr, nullptr));
+}
+
+/// The grey of a feature, by its fields.
+double grey_of(const std::string& path, OGRFeatureH feature, int grey_field, int kind_field) {
+  if (grey_field >= 0 && OGR_F_IsFieldSetAndNotNull(feature, grey_field)) {
+    const double grey = OGR_F_GetFieldAsDouble(feature, grey_field);
+    if (!(grey >= 0 && grey <= 1))
+      throw IoError(path, fmt::format("feature {} has grey = {}; must be in [0, 1]",
+                                      OGR_F_GetFID(feature), grey));
+    return grey;
+  }
+  const std::string kind = kind_field >= 0 ? OGR_F_GetFieldAsString(feature, kind_field) : "";
+  const auto found = greys.find(kind);
+  if (found == greys.end())
+    throw IoError(path,
+                  fmt::format("feature {} has kind = \"{}\"; must be ridge, river, land, rocks or "
+                              "sea, or have a field grey",
+                              OGR_F_GetFID(feature), kind));
+  return found->second;
+}
+
+struct Shapes {
+  std::vector<OGRGeometryH> geometries;
+  std::vector<double> greys;
+  bool polygons = false;
+
+  Shapes() = default;
+  Shapes(const Shapes&) = delete;
+  Shapes& operator=(const Shapes&) = delete;
+  ~Shapes() {
+    for (OGRGeometryH geometry : geometries) OGR_G_DestroyGeometry(geometry);
+  }
+};
+
+void read_shapes(const std::string& path, Shapes& shapes) {
+  const VectorLayer layer(path, "");
+  const OGRFeatureDefnH fields = OGR_L_GetLayerDefn(layer.get());
+  const int grey = OGR_FD_GetFieldIndex(fields, "grey"),
+            kind = OGR_FD_GetFieldIndex(fields, "kind");
+  layer.for_each([&](OGRFeatureH feature) {
+    const OGRGeometryH geometry = OGR_F_GetGeometryRef(feature);
+    if (!geometry) return true;
+    const int dimension = OGR_G_GetDimension(geometry);
+    if (dimension < 1)
+      throw IoError(path, fmt::format("feature {} is a point; must be a line or a polygon",
+                                      OGR_F_GetFID(feature)));
+    shapes.greys.push_back(grey_of(path, feature, grey, kind));
+    shapes.geometries.push_back(OGR_G_Clone(geometry));
+    shapes.polygons |= dimension == 2;
+    return true;
+  });
+  if (shapes.geometries.empty()) throw IoError(path, "holds no line and no polygon");
+}
+
+}  // namespace
+
+bool is_vector_file(const std::string& path) {
+  return !open(path, GDAL_OF_RASTER) && open(path, GDAL_OF_VECTOR);
+}
+
+Raster<float> draw_vectors(const std::string& path, const Canvas& canvas) {
+  Shapes shapes;
+  read_shapes(path, shapes);
+  Raster<float> drawing(canvas.size, shapes.polygons ? 0.0F : 1.0F);
+  const GdalErrors errors;
+  const DatasetPtr dataset =
+      wrap_cells(drawing.cells().data(), drawing.cols(), drawing.rows(), GDT_Float32);
+  std::array<double, 6> corner = canvas.ref.to_world;
+  corner[0] -= 0.5 * (corner[1] + corner[2]);
+  corner[3] -= 0.5 * (corner[4] + corner[5]);
+  GDALSetGeoTransform(dataset.get(), corner.data());
+  int band = 1;
+  const CPLErr error = GDALRasterizeGeometries(
+      dataset.get(), 1, &band, int(shapes.geometries.size()), shapes.geometries.data(), nullptr,
+      nullptr, shapes.greys.data(), nullptr, nullptr, nullptr);
+  if (error != CE_None) errors.fail(path, "cannot be drawn on the canvas");
+  return drawing;
+}
+
+Raster<float> median_filter(const Raster<float>& z, int side, int passes, const Run& run) {
+  if (side < 1 || side > 255 || side % 2 == 0)
+    throw std::invalid_argument(fmt::format("side = {}; must be an odd number in [1, 255]", side));
+  if (passes < 0 || passes > 100)
+    throw std::invalid_argument(fmt::format("passes = {}; must be in [0, 100]", passes));
+  Raster<float> from = z, to(z.size());
+  if (z.empty()) return from;
+  const OIIO::ImageSpec spec(z.cols(), z.rows(), 1, OIIO::TypeDesc::FLOAT);
+  for (int pass = 0; pass < passes; ++pass) {
+    run.report(double(pass) / passes, "median");
+    const OIIO::ImageBuf source(spec, from.cells().data());
+    OIIO::ImageBuf target(spec, to.cells().data());
+    if (!OIIO::ImageBufAlgo::median_filter(target, source, side, side, {}, run.threads))
+      throw std::runtime_error("median filter: " + one_line(target.geterror()));
+    std::swap(from, to);
+  }
+  return from;
+}
+
+}  // namespace dem
