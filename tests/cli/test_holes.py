@@ -181,6 +181,30 @@ class Layers(HoleTest):
         self.assertEqual(report["filled"], 100)
 
 
+class Check(HoleTest):
+    def tiles(self, wrong=()):
+        os.makedirs(self.path("tiles"), exist_ok=True)
+        for lon in (10, 11):
+            self.hgt(f"tiles/N10E0{lon}.hgt", 33,
+                     lambda c, r, o=32 * (lon - 10): height(c + o, r) + (7 if (lon, c, r) in wrong else 0))
+
+    def test_tiles_with_equal_edges_pass(self):
+        self.tiles()
+        report = self.json("check", "tiles")
+        self.assertEqual((report["tiles"], len(report["edges"]), report["bad_edges"]), (2, 1, 0))
+
+    def test_edges_that_differ_are_listed(self):
+        self.tiles(wrong={(11, 0, 5), (11, 9, 9)})
+        done = self.dem("check", "tiles")
+        self.assertEqual(done.returncode, 4)
+        self.assertIn("N10E010.hgt and N10E011.hgt to its east: 1 of 33 shared cells differ, by up to 7 m",
+                      done.stdout)
+
+    def test_folder_without_tiles_is_refused(self):
+        self.fails(2, "check", ".", says=["no .hgt"])
+        self.fails(2, "check", "nowhere", says=["nowhere"])
+
+
 class AnySize(HoleTest):
     memory = ["--memory", "300M"]
 
