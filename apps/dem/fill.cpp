@@ -234,8 +234,8 @@ int fill(const Options& o, Shell& shell) {
   for (const std::string& path : {o.out, o.sigma, o.origin, o.table})
     if (!path.empty()) check_writable(path, shell.overwrite);
 
-  const FillRequest request{chosen,           o.choice,         o.whole,
-                            !o.table.empty(), !o.sigma.empty(), !o.origin.empty()};
+  const FillRequest request{chosen,           o.choice,          o.whole, !o.table.empty(),
+                            !o.sigma.empty(), !o.origin.empty(), o.aux,   o.water};
   if (memory > 0 && reads_by_parts(o.in)) return fill_stream(o, request, memory, shell);
 
   const Run run = shell.run();
@@ -313,7 +313,7 @@ void add_fill(CLI::App& app, Shell& shell) {
       "  dem fill coast.tif filled.tif --method mcmd --inner-only   # fast; not the border's "
       "voids\n"
       "Methods: " +
-          method_names() + " (their settings: dem methods NAME)",
+          method_names() + " (their settings: dem methods NAME)\n" + HoleChoice::condition_help(),
       [o, &shell] { return fill(*o, shell); });
   verb->add_option("IN", o->in, "a DEM with holes, anything GDAL opens")->required()->type_name("");
   verb->add_option("OUT", o->out, "the filled DEM; the format follows the extension")
@@ -332,27 +332,25 @@ void add_fill(CLI::App& app, Shell& shell) {
       ->check(CLI::Range(1, 1000000).description(""))
       ->type_name("K");
   verb->add_option("--seed", o->seed, "of random numbers")->type_name("N");
-  verb->add_option(
-          "--source", o->origin,
-          "also write where each cell comes from: 0 measured, 1 method, 2 aux, 3 water, 4 left")
+  verb->add_option("--source", o->origin,
+                   "also write where each cell comes from: measured, method, aux, water")
       ->type_name("FILE");
   verb->add_option("--report-holes", o->table,
-                   "also write a JSON table of the holes, with the error of hidden rim cells")
+                   "also write a JSON table of holes, with errors of hidden rim cells")
       ->type_name("FILE");
   verb->add_option("--aux", o->aux,
-                   "another DEM that knows the holes; each hole takes the best of several, or none")
+                   "a DEM to fill over; each hole takes the best of several, or none")
       ->allow_extra_args(false)
       ->type_name("DEM");
-  verb->add_option("--water", o->water,
-                   "polygons of lakes: flat in the holes, their shores above; anything OGR opens")
+  verb->add_option("--water", o->water, "polygons of lakes: flat where unknown, their shores above")
       ->type_name("FILE");
   verb->add_flag("--whole", o->whole,
-                 "fill the raster as one problem; else so only when a quarter of it is unknown");
+                 "as one problem, not hole by hole; so by itself above 25 % unknown");
   verb->add_option("--memory", o->memory,
-                   "work part by part within so much memory: 2G, 500M; holes too large are left")
+                   "part by part within so much memory: 2G, 500M (GeoTIFF, VRT ...)")
       ->type_name("SIZE");
   verb->add_flag("--resume", o->resume,
-                 "keep a journal beside OUT; the same command goes on where it was stopped");
+                 "keep a journal; the same command goes on where it was stopped");
   o->choice.add_options(*verb);
   add_read_options(*verb, o->read);
   add_write_options(*verb, o->write);

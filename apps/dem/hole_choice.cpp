@@ -8,12 +8,6 @@ namespace {
 
 constexpr std::size_t verdicts = 8;
 
-std::string names_of_facts() {
-  std::string names;
-  for (const HoleFact& fact : hole_facts()) names += (names.empty() ? "" : ", ") + fact.name;
-  return names;
-}
-
 CLI::Validator above_zero() {
   return CLI::Validator(
       [](const std::string& text) {
@@ -43,15 +37,23 @@ void HoleChoice::add_options(CLI::App& app) {
   app.add_option("--min-cells", min_cells, "only those of at least so many cells")
       ->type_name("N")
       ->group(group);
-  app.add_option(
-         "--where", where,
-         "only those that meet a condition, \"area_km2 < 5 and rim_relief_m < 200\"; names: " +
-             names_of_facts())
+  app.add_option("--where", where, "only those that meet a condition, see below")
       ->type_name("CONDITION")
       ->group(group);
   app.add_option("--region", region, "only those with a cell in these polygons, anything OGR opens")
       ->type_name("FILE")
       ->group(group);
+}
+
+std::string HoleChoice::condition_help() {
+  std::string text = "Conditions: \"area_km2 < 5 and not at_border\", of";
+  std::size_t width = text.size();
+  for (const HoleFact& fact : hole_facts()) {
+    if (width + fact.name.size() > 96) text += "\n ", width = 2;
+    text += " " + fact.name;
+    width += fact.name.size() + 1;
+  }
+  return text;
 }
 
 std::string HoleChoice::text() const {

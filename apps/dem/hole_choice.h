@@ -19,6 +19,9 @@ struct HoleChoice {
 
   void add_options(CLI::App& app);
 
+  /// How conditions are written, for the help.
+  static std::string condition_help();
+
   /// The options in words: equal for equal choices.
   std::string text() const;
 };

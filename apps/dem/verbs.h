@@ -9,6 +9,7 @@ void add_info(CLI::App& app, Shell& shell);
 void add_sample(CLI::App& app, Shell& shell);
 void add_fill(CLI::App& app, Shell& shell);
 void add_grid(CLI::App& app, Shell& shell);
+void add_check(CLI::App& app, Shell& shell);
 void add_evaluate(CLI::App& app, Shell& shell);
 void add_curve(CLI::App& app, Shell& shell);
 void add_reproduce(CLI::App& app, Shell& shell);

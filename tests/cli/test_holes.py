@@ -5,11 +5,10 @@ import os
 import random
 import signal
 import subprocess
-import sys
 import time
 import unittest
 
-from support import DEM, VOID, CliTest, height, hgt_bytes, limit_file_size, main, read_hgt
+from support import DEM, VOID, CliTest, asc_text, height, hgt_bytes, limit_file_size, main, read_hgt
 
 KILLS = int(os.environ.get("DEM_KILLS", "2"))
 
@@ -119,6 +118,91 @@ class Report(HoleTest):
         self.succeeds("fill", "N10E010.hgt", "o.tif", "-m", "mcmd")
         for words in (b"dem fill N10E010.hgt o.tif -m mcmd", b"DEM_KNOWN_CHECKSUM"):
             self.assertIn(words, self.read("o.tif"))
+
+
+class Layers(HoleTest):
+    """A hole in a bumpy field that only another DEM knows, 30 m off; and a lake."""
+
+    def bump(self, c, r):
+        return height(c, r) + (90 if 12 <= c < 18 and 12 <= r < 18 else 0)
+
+    def fields(self):
+        self.hgt(value=lambda c, r: VOID if 10 <= c < 20 and 10 <= r < 20 else self.bump(c, r))
+        self.hgt("N10E010.aux.hgt", value=lambda c, r: self.bump(c, r) - 30)
+
+    def test_aux_brings_what_it_knows_without_its_offset(self):
+        self.fields()
+        for parts in ([], ["--memory", "300M"]):
+            if parts:
+                self.succeeds("fill", "N10E010.hgt", "a.tif", "--where", "cells < 0")
+            done = self.dem("fill", "a.tif" if parts else "N10E010.hgt", "N10E010.o.hgt" if not parts else "o.tif",
+                            "--aux", "N10E010.aux.hgt", "--json", "--source", "s.tif", "--overwrite", *parts)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn("30.0 m below", done.stderr)
+            report = json.loads(done.stdout)
+            self.assertEqual(report["over_aux"], 100)
+            self.assertAlmostEqual(report["aux"][0]["offset_m"], 30, places=3)
+        got = read_hgt(self.path("N10E010.o.hgt"))
+        worst = max(abs(got[r * 33 + c] - self.bump(c, r)) for c in range(33) for r in range(33))
+        self.assertLessEqual(worst, 1)
+        values = memoryview(self.cells("o.tif")).cast("f").tolist()
+        self.assertEqual(values, [float(v) for v in got])
+
+    def test_aux_in_another_grid_is_reprojected(self):
+        self.fields()
+        self.hgt("N10E010.fine.hgt", side=97, value=lambda c, r: self.bump(c / 3, r / 3) - 30)
+        self.succeeds("fill", "N10E010.hgt", "N10E010.o.hgt", "--aux", "N10E010.fine.hgt")
+        got = read_hgt(self.path("N10E010.o.hgt"))
+        self.assertLessEqual(abs(got[15 * 33 + 15] - self.bump(15, 15)), 6)
+
+    def test_aux_elsewhere_is_told_and_the_method_fills(self):
+        self.fields()
+        self.hgt("N50E050.hgt")
+        done = self.succeeds("fill", "N10E010.hgt", "o.tif", "--aux", "N50E050.hgt", "--json")
+        self.assertIn("does not cover", done.stderr)
+        report = json.loads(done.stdout)
+        self.assertEqual((report["filled"], report["over_aux"]), (100, 0))
+
+    def test_aux_without_coordinates_or_file_is_refused(self):
+        self.fields()
+        self.write("a.asc", asc_text([[1, 2], [3, 4]]))
+        self.fails(2, "fill", "N10E010.hgt", "o.tif", "--aux", "a.asc", says=["a.asc", "coordinate system"])
+        self.fails(2, "fill", "N10E010.hgt", "o.tif", "--aux", "none.tif", says=["none.tif"])
+
+    def test_water_lies_flat(self):
+        self.fields()
+        lake = [[10.35, 10.3], [10.5, 10.3], [10.5, 10.6], [10.35, 10.6], [10.35, 10.3]]
+        self.write("w.geojson", json.dumps({"type": "Polygon", "coordinates": [lake]}))
+        report = self.json("fill", "N10E010.hgt", "N10E010.o.hgt", "--water", "w.geojson")
+        got = read_hgt(self.path("N10E010.o.hgt"))
+        sheet = {got[r * 33 + c] for c in range(12, 16) for r in range(14, 19)}
+        self.assertEqual(len(sheet), 1)
+        self.assertGreater(report["water"], 20)
+        self.assertEqual(report["filled"], 100)
+
+
+class Check(HoleTest):
+    def tiles(self, wrong=()):
+        os.makedirs(self.path("tiles"), exist_ok=True)
+        for lon in (10, 11):
+            self.hgt(f"tiles/N10E0{lon}.hgt", 33,
+                     lambda c, r, o=32 * (lon - 10): height(c + o, r) + (7 if (lon, c, r) in wrong else 0))
+
+    def test_tiles_with_equal_edges_pass(self):
+        self.tiles()
+        report = self.json("check", "tiles")
+        self.assertEqual((report["tiles"], len(report["edges"]), report["bad_edges"]), (2, 1, 0))
+
+    def test_edges_that_differ_are_listed(self):
+        self.tiles(wrong={(11, 0, 5), (11, 9, 9)})
+        done = self.dem("check", "tiles")
+        self.assertEqual(done.returncode, 4)
+        self.assertIn("N10E010.hgt and N10E011.hgt to its east: 1 of 33 shared cells differ, by up to 7 m",
+                      done.stdout)
+
+    def test_folder_without_tiles_is_refused(self):
+        self.fails(2, "check", ".", says=["no .hgt"])
+        self.fails(2, "check", "nowhere", says=["nowhere"])
 
 
 class AnySize(HoleTest):

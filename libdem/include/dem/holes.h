@@ -166,7 +166,7 @@ struct HolePatch {
   std::vector<CellOrigin> origin;      ///< of the runs' cells
   /// Of each hole: how many cells come from method, guide, water, and how many are left.
   std::vector<std::array<std::uint64_t, 4>> cells_by_origin;
-  std::vector<Figure> report;          ///< what the method says of the window
+  std::vector<Figure> report;  ///< what the method says of the window
   double seconds = 0;
 };
 
