@@ -12,12 +12,12 @@ import tempfile
 # The layer of each file. A header dem/NAME.h and its source NAME.cpp share a name and a layer.
 LAYERS = {
     "values": ["canvas", "dem", "fields", "palette", "raster", "river", "run"],
-    "helpers": ["flood", "gradient", "parallel", "paths", "random", "vectorised"],  # private: for any algorithm
-    "algorithms": ["baseline", "contours", "draw", "erosion", "evaluate", "faults", "holes", "mcmd", "networks",
+    "helpers": ["cubic", "flood", "gradient", "parallel", "paths", "random", "vectorised"],  # private: for any algorithm
+    "algorithms": ["baseline", "contours", "deterrace", "draw", "erosion", "evaluate", "faults", "holes", "mcmd", "networks",
                    "noise", "outliers", "points", "raytrace", "riverland", "sample", "sketch", "spline"],
-    "methods": ["generators", "gridding", "methods"],
-    "io": ["aligned_reader", "baselines", "cells", "crs", "drawing", "gdal_raster", "gdal_support", "geodesy", "heightmap", "hgt",
-           "image", "io", "las", "lattices", "nodata", "ogr_layers", "oiio_support", "point_files", "point_reading",
+    "methods": ["generators", "greedy", "gridding", "methods", "supersample"],
+    "io": ["aligned_reader", "baselines", "cells", "crs", "drawing", "gdal_raster", "gdal_support", "geodesy", "heightmap",
+           "hgt", "image", "io", "las", "lattices", "nodata", "ogr_layers", "oiio_support", "point_files", "point_reading",
            "point_text", "point_vectors", "polygons", "raster_stream", "staged_file"],
 }
 
@@ -44,7 +44,7 @@ MAY_INCLUDE = {
     "values": {"values"},
     "helpers": {"values", "helpers"},
     "algorithms": {"values", "helpers"},
-    "methods": {"values", "algorithms", "methods"},
+    "methods": {"values", "helpers", "algorithms", "methods"},
     "io": {"values", "helpers", "algorithms", "methods", "io"},
     "apps": {"values", "algorithms", "methods", "io", "apps"},
 }

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
+#include "budget.h"
 #include "experiment.h"
 #include "verbs.h"
 
@@ -13,10 +14,39 @@ struct Options {
   std::string truth, dir;
   std::vector<std::string> rivals;
   CurveOptions curve;
+  BudgetOptions budget;  // when an error is wanted
   ReadOptions read;
 };
 
+/// How many cells each way of choosing them needs for the wanted errors.
+int budget(const Options& given, Shell& shell) {
+  BudgetOptions o = given.budget;
+  if (given.curve.methods != CurveOptions().methods) {
+    if (given.curve.methods.size() != 1)
+      throw std::invalid_argument("--budget takes one method: --methods NAME");
+    o.method = given.curve.methods.front();
+  }
+  if (given.curve.percents != CurveOptions().percents) o.percents = given.curve.percents;
+  o.seed = given.curve.seed;
+  check(o);
+  const OutputFolder folder(given.dir);
+  for (const char* name : kBudgetFiles) check_writable(folder.file(name), shell.overwrite);
+  const Run run = shell.run();
+  const DemFile file = read_dem(given.truth, given.read, run.part(0, 0.02));
+  if (count(file.dem.known) < 16)
+    throw IoError(given.truth, "fewer than sixteen known cells; nothing to choose from");
+  const auto points = measure_budget(file.dem, o, run.part(0.02, 1));
+  const std::string title =
+      "Cells to keep of " + std::filesystem::path(given.truth).filename().string();
+  const Json json = write_budget(folder, title, file.dem, o, points, shell.overwrite);
+  shell.print(json, budget_table(file.dem, o, points));
+  shell.say("wrote {}, {}, {}", folder.file("budget.csv"), folder.file("budget.json"),
+            folder.file("budget.svg"));
+  return kDone;
+}
+
 int curve(const Options& o, Shell& shell) {
+  if (!o.budget.rmse_m.empty()) return budget(o, shell);
   check(o.curve);
   CurveOptions options = o.curve;
   for (const auto& path : o.rivals) {
@@ -50,7 +80,8 @@ void add_curve(CLI::App& app, Shell& shell) {
       app, shell, "curve", "Error and time of each method at each rate; table, CSV, SVG",
       "  dem curve whole.tif results\n"
       "  dem curve whole.tif results --methods mcmd,mcmd:paper,idw --rates 50,10,3.4,1\n"
-      "  dem curve N44W072.hgt results --repeats 1 --overwrite\n" +
+      "  dem curve N44W072.hgt results --repeats 1 --overwrite\n"
+      "  dem curve whole.tif results --budget 5,10 --methods spline\n" +
           fmt::format("Rates: {}, when none are given", fmt::join(o->curve.percents, ", ")),
       [o, &shell] { return curve(*o, shell); });
   verb->add_option("TRUTH", o->truth, "a DEM, as whole as can be")->required()->type_name("");
@@ -65,6 +96,12 @@ void add_curve(CLI::App& app, Shell& shell) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("P,P,P");
+  verb->add_option("--budget", o->budget.rmse_m,
+                   "instead: cells that random, regular, silhouette and greedy sampling need for "
+                   "this RMSE in metres")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("M,M");
   verb->add_option("--repeats", o->curve.repeats, "runs of each; the median time counts")
       ->check(CLI::Range(1, 1000).description(""))
       ->type_name("N")

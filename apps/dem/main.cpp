@@ -142,6 +142,8 @@ int run(int argc, char** argv) {
   add_fill(app, shell);
   add_grid(app, shell);
   add_check(app, shell);
+  add_supersample(app, shell);
+  add_deterrace(app, shell);
   add_evaluate(app, shell);
   add_curve(app, shell);
   add_reproduce(app, shell);

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dem/baselines.h"
+#include "dem/greedy.h"
 #include "verbs.h"
 
 namespace dem::app {
@@ -15,6 +17,9 @@ struct Options {
   std::string in, out;
   std::string keep, edges, voids;  // percentages of the known cells
   std::size_t count = 0;
+  std::size_t greedy = 0;
+  double max_error = 0;
+  std::string method{default_fill_method()};  // that the greedy way reconstructs with
   int every = 0, tracks = 0;
   double contours = 0;
   std::uint64_t seed = 1;
@@ -36,17 +41,29 @@ std::size_t cells_of(double share, std::size_t known) {
 void check_options(const Options& o) {
   if (std::ranges::count_if(o.ways, [](const CLI::Option* way) { return way->count() > 0; }) != 1)
     throw std::invalid_argument(
-        "exactly one of --keep, --count, --every, --edges, --voids, --tracks, --contours is needed "
-        "(see `dem "
-        "sample --help`)");
+        "exactly one of --keep, --count, --every, --edges, --voids, --tracks, --contours, "
+        "--greedy, "
+        "--max-error is needed (see `dem sample --help`)");
+  find_method(all_fill_methods(), o.method);
   for (const auto& [name, text] :
        {std::pair{"keep", o.keep}, {"edges", o.edges}, {"voids", o.voids}})
     if (!text.empty()) parse_share(name, text);
 }
 
-Sampled sample(const Options& o, const Dem& dem) {
+Sampled sample_by_need(const Options& o, const Dem& dem, const Run& run) {
+  const ChosenMethod method = find_method(all_fill_methods(), o.method);
+  GreedySample got =
+      sample_greedy(dem, method, {.count = o.greedy, .max_error_m = o.max_error}, run);
+  const GreedyRound& last = got.rounds.back();
+  return {std::move(got.dem),
+          fmt::format("greedy: {} reconstructs it with RMSE {:.4g} m, {:.4g} m at most", o.method,
+                      last.rmse_m, last.max_error_m)};
+}
+
+Sampled sample(const Options& o, const Dem& dem, const Run& run) {
   const std::size_t known = count(dem.known);
   const std::string seed = fmt::format(", seed {}", o.seed);
+  if (o.greedy || o.max_error > 0) return sample_by_need(o, dem, run);
   if (o.count) return {sample_random(dem, o.count, o.seed), "random" + seed};
   if (!o.keep.empty())
     return {sample_random(dem, cells_of(parse_share("keep", o.keep), known), o.seed),
@@ -72,7 +89,7 @@ int run_sample(const Options& o, Shell& shell) {
   if (before == 0) throw IoError(o.in, "no known cell; nothing can be sampled from it");
 
   run.report(0.4, "sampling");
-  const Sampled sampled = sample(o, file.dem);
+  const Sampled sampled = sample(o, file.dem, run.part(0.4, 0.6));
   const std::size_t after = count(sampled.dem.known);
 
   // Contour cells have new heights, so the original values are not theirs any more.
@@ -122,7 +139,15 @@ void add_sample(CLI::App& app, Shell& shell) {
       way("--edges", o->edges, "P%", "keep this share, where Sobel's gradient is strongest"),
       way("--voids", o->voids, "P%", "cut ragged voids until this share is gone"),
       way("--tracks", o->tracks, "N", "keep N straight tracks, as a ship's")->check(positive),
-      way("--contours", o->contours, "METRES", "keep contour lines so far apart")->check(positive)};
+      way("--contours", o->contours, "METRES", "keep contour lines so far apart")->check(positive),
+      way("--greedy", o->greedy, "N", "keep N cells, those that --method would miss worst")
+          ->check(positive),
+      way("--max-error", o->max_error, "METRES",
+          "keep so many that --method misses no cell by more")
+          ->check(positive)};
+  verb->add_option("-m,--method", o->method, "that --greedy and --max-error reconstruct with")
+      ->type_name("NAME")
+      ->capture_default_str();
   verb->add_option("--seed", o->seed, "another seed, other cells; the same on every machine")
       ->check([](const std::string& text) {
         return text.starts_with('-') ? text + "; must be a whole number from 0 up" : std::string();

@@ -10,6 +10,8 @@ void add_sample(CLI::App& app, Shell& shell);
 void add_fill(CLI::App& app, Shell& shell);
 void add_grid(CLI::App& app, Shell& shell);
 void add_check(CLI::App& app, Shell& shell);
+void add_supersample(CLI::App& app, Shell& shell);
+void add_deterrace(CLI::App& app, Shell& shell);
 void add_evaluate(CLI::App& app, Shell& shell);
 void add_curve(CLI::App& app, Shell& shell);
 void add_reproduce(CLI::App& app, Shell& shell);

@@ -3,46 +3,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <stdexcept>
 
+#include "cubic.h"
 #include "dem/spline.h"
 
 namespace dem {
 namespace {
-
-/// Weights of four cells in a row, for a place t (0 to 1) between the middle two: cubic convolution
-/// that is exact on quadratics.
-std::array<double, 4> cubic(double t) {
-  return {((2 - t) * t - 1) * t / 2, ((3 * t - 5) * t * t + 2) / 2, ((4 - 3 * t) * t + 1) * t / 2,
-          (t - 1) * t * t / 2};
-}
-
-/// The surface at a place between cells. Beyond the rim it goes on straight.
-double surface_at(const Raster<float>& z, double col, double row) {
-  const double c0 = std::floor(col), r0 = std::floor(row);
-  const auto wx = cubic(col - c0), wy = cubic(row - r0);
-  // The height of a cell, also just beyond the rim.
-  const auto at = [&](int x, int y) {
-    const int cx = std::clamp(x, 0, z.cols() - 1), cy = std::clamp(y, 0, z.rows() - 1);
-    const int ix = std::clamp(2 * cx - x, 0, z.cols() - 1);
-    const int iy = std::clamp(2 * cy - y, 0, z.rows() - 1);
-    return 2 * double(z(cx, cy)) - double(z(ix, iy));
-  };
-  double sum = 0;
-  for (int j = 0; j < 4; ++j)
-    for (int i = 0; i < 4; ++i)
-      sum += wx[std::size_t(i)] * wy[std::size_t(j)] * at(int(c0) + i - 1, int(r0) + j - 1);
-  return sum;
-}
 
 /// A pass corrects a height by at most so many times what the plane moved it by: where points
 /// contradict each other, a surface through all of them would be worse than the points.
 constexpr float most_times = 3;
 
 double miss_of(const OffCentre& p, const Raster<float>& z) {
-  return double(p.z) - surface_at(z, p.col + double(p.dx), p.row + double(p.dy));
+  return double(p.z) - cubic_at(z, p.col + double(p.dx), p.row + double(p.dy));
 }
 
 Misfit misfit_of(const std::vector<OffCentre>& points, const Raster<float>& z) {

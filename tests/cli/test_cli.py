@@ -9,7 +9,8 @@ import unittest
 
 from support import VOID, CliTest, asc_text, height, main, raw_vrt_text, read_hgt
 
-VERBS = ["info", "sample", "fill", "grid", "check", "evaluate", "curve", "reproduce", "generate", "erode", "render", "methods"]
+VERBS = ["info", "sample", "fill", "grid", "supersample", "deterrace", "check", "evaluate", "curve", "reproduce",
+         "generate", "erode", "render", "methods"]
 
 
 class Help(CliTest):

@@ -1,0 +1,113 @@
+// dem supersample: a DEM on a finer lattice.
+
+#include "dem/supersample.h"
+
+#include <CLI/CLI.hpp>
+
+#include "dem/baselines.h"
+#include "verbs.h"
+
+namespace dem::app {
+namespace {
+
+struct Options {
+  std::string in, out;
+  std::string method{default_fill_method()};
+  std::vector<std::string> set;
+  bool roughness = false;
+  std::uint64_t seed = 1;
+  SupersampleOptions super;
+  ReadOptions read;
+};
+
+ChosenMethod choose(const Options& o) {
+  ChosenMethod chosen = find_method(all_fill_methods(), o.method);
+  for (const auto& text : o.set) chosen.settings.push_back(parse_setting(text));
+  if (o.roughness) {
+    if (chosen.method->name != "spline")
+      throw std::invalid_argument("--roughness is the spline's; method " + o.method + " has none");
+    chosen.settings.emplace_back("realisation", "1");
+    chosen.settings.emplace_back("seed", std::to_string(o.seed));
+  }
+  // One known cell is cheap to fill: bad settings show before long work.
+  chosen.method->fill({Raster<float>({1, 1}), Mask({1, 1}, 1), {}, {}}, chosen.settings, {});
+  return chosen;
+}
+
+int run_supersample(const Options& o, Shell& shell) {
+  const ChosenMethod method = choose(o);
+  check_writable(o.out, shell.overwrite);
+  const Run run = shell.run();
+  DemFile file = read_dem(o.in, o.read, run.part(0, 0.1));
+  if (count(file.dem.known) == 0) throw IoError(o.in, "no known cell");
+  SupersampleOptions options = o.super;
+  options.nodes = file.source.node_registered;
+  const Supersampled fine = supersample(file.dem, method, options, run.part(0.1, 0.9));
+  const Lattice lattice = finer_lattice(file.dem, options);
+
+  Source source = file.source;
+  source.exact = {};
+  source.type = CellType::float32;
+  source.nodata.reset();
+  WriteOptions write;
+  write.overwrite = shell.overwrite;
+  if (holds_metadata(o.out, ""))
+    write.metadata = {{"DEM_METHOD", o.method}, {"DEM_VERSION", DEM_VERSION}};
+  const Dem dem{fine.filled.z, Mask(lattice.size, 1), lattice.ref, lattice.spacing};
+  write_dem(o.out, dem, source, write, run.part(0.9, 1));
+
+  const bool means = options.preserve == Preserve::means;
+  shell.say(
+      "{} x {} cells of {:.6g} x {:.6g} m from {} x {}; coarse {} missed by {:.3g} m (RMS), "
+      "{:.3g} m at most: {}",
+      lattice.size.cols, lattice.size.rows, lattice.spacing.dx_m, lattice.spacing.dy_m,
+      file.dem.size().cols, file.dem.size().rows, means ? "means" : "heights", fine.miss_rms_m,
+      fine.miss_max_m, o.out);
+  shell.print({{"output", o.out},
+               {"cols", lattice.size.cols},
+               {"rows", lattice.size.rows},
+               {"cell_m", {lattice.spacing.dx_m, lattice.spacing.dy_m}},
+               {"preserve", means ? "block-mean" : "heights"},
+               {"miss_rms_m", fine.miss_rms_m},
+               {"miss_max_m", fine.miss_max_m}},
+              "");
+  return kDone;
+}
+
+}  // namespace
+
+void add_supersample(CLI::App& app, Shell& shell) {
+  const auto o = std::make_shared<Options>();
+  auto* verb = add_verb(app, shell, "supersample", "A DEM on a finer lattice",
+                        "  dem supersample coarse.tif fine.tif --factor 3\n"
+                        "  dem supersample means.tif fine.tif --factor 2.5 --preserve block-mean\n"
+                        "  dem supersample coarse.tif rough.tif --factor 4 --roughness",
+                        [o, &shell] { return run_supersample(*o, shell); });
+  verb->add_option("IN", o->in, "a DEM; its unknown cells are filled too")
+      ->required()
+      ->type_name("");
+  verb->add_option("OUT", o->out, "the finer DEM, in float32")->required()->type_name("");
+  verb->add_option("-f,--factor", o->super.factor, "so many fine cells to a coarse one; above 1")
+      ->required()
+      ->type_name("N");
+  verb->add_option_function<std::string>(
+          "--preserve",
+          [o](const std::string& what) {
+            o->super.preserve = what == "heights" ? Preserve::heights : Preserve::means;
+          },
+          "heights: met at the coarse centres; block-mean: of each coarse cell; default heights")
+      ->check(CLI::IsMember({"heights", "block-mean"}).description(""))
+      ->type_name("WHAT");
+  verb->add_flag("--roughness", o->roughness,
+                 "as rough below the old cell size as the terrain would be (a random surface)");
+  verb->add_option("--seed", o->seed, "of the roughness")->type_name("N")->capture_default_str();
+  verb->add_option("-m,--method", o->method, "how to fill between (see dem methods)")
+      ->type_name("NAME")
+      ->capture_default_str();
+  verb->add_option("-s,--set", o->set, "a setting of the method; may be repeated")
+      ->allow_extra_args(false)
+      ->type_name("KEY=VALUE");
+  add_read_options(*verb, o->read);
+}
+
+}  // namespace dem::app
