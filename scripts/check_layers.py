@@ -15,7 +15,7 @@ LAYERS = {
     "helpers": ["cubic", "flood", "gradient", "parallel", "paths", "random", "vectorised"],  # private: for any algorithm
     "algorithms": ["baseline", "contours", "deterrace", "draw", "erosion", "evaluate", "faults", "holes", "mcmd", "networks",
                    "noise", "outliers", "points", "raytrace", "riverland", "sample", "sketch", "spline"],
-    "methods": ["generators", "greedy", "gridding", "methods", "supersample"],
+    "methods": ["find_row", "generators", "greedy", "gridding", "methods", "supersample"],
     "io": ["aligned_reader", "baselines", "cells", "crs", "drawing", "gdal_raster", "gdal_support", "geodesy", "heightmap",
            "hgt", "image", "io", "las", "lattices", "nodata", "ogr_layers", "oiio_support", "point_files", "point_reading",
            "point_text", "point_vectors", "polygons", "raster_stream", "staged_file"],
