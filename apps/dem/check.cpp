@@ -144,12 +144,11 @@ int check_tiles(const Options& options, Shell& shell) {
 
 void add_check(CLI::App& app, Shell& shell) {
   const auto options = std::make_shared<Options>();
-  auto* verb = add_verb(
-      app, shell, "check",
-      "List neighbouring tiles of a folder whose shared rows or columns differ (then exit 4)",
-      "  dem check tiles/\n"
-      "  dem check tiles/ --json",
-      [options, &shell] { return check_tiles(*options, shell); });
+  auto* verb = add_verb(app, shell, "check",
+                        "List tiles of a folder whose shared edges differ (then exit 4)",
+                        "  dem check tiles/\n"
+                        "  dem check tiles/ --json",
+                        [options, &shell] { return check_tiles(*options, shell); });
   verb->add_option("DIR", options->folder, "a folder of .hgt or .tif tiles that share their edges")
       ->required()
       ->type_name("");
