@@ -156,12 +156,19 @@ class Rules {
     const auto weight = [&](double d, double n) {
       return d == 0 ? 0.0 : mean_ ? 1 / n : std::pow(d, -exponent_);
     };
+    std::array<double, 4> side_weight, corner_weight;
+    for (std::size_t i = 0; i < 4; ++i) {
+      side_weight[i] = weight(side[i], count(side));
+      corner_weight[i] = weight(corner[i], count(corner));
+    }
     const auto cross = [&](auto factor) {
-      const auto w = [&](const double* d, int i) {
-        return float(weight(d[i], count(d)) * factor(d[i]));
+      const auto w = [&](const double* d, const auto& weights, std::size_t i) {
+        return float(weights[i] * factor(d[i]));
       };
-      return Cross{w(side, 0),   w(side, 1),   w(side, 2),   w(side, 3),
-                   w(corner, 0), w(corner, 1), w(corner, 2), w(corner, 3)};
+      return Cross{w(side, side_weight, 0),     w(side, side_weight, 1),
+                   w(side, side_weight, 2),     w(side, side_weight, 3),
+                   w(corner, corner_weight, 0), w(corner, corner_weight, 1),
+                   w(corner, corner_weight, 2), w(corner, corner_weight, 3)};
     };
     const auto mean = [&](const double* d) {
       return (d[0] + d[1] + d[2] + d[3]) / std::max(count(d), 1.0);
