@@ -97,8 +97,7 @@ void add_curve(CLI::App& app, Shell& shell) {
       ->allow_extra_args(false)
       ->type_name("P,P,P");
   verb->add_option("--budget", o->budget.rmse_m,
-                   "instead: cells that random, regular, silhouette and greedy sampling need for "
-                   "this RMSE in metres")
+                   "instead: cells that each way of sampling needs for this RMSE, m")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("M,M");
@@ -107,7 +106,7 @@ void add_curve(CLI::App& app, Shell& shell) {
       ->type_name("N")
       ->capture_default_str();
   verb->add_option("--rivals", o->rivals,
-                   "scores of other programs, from scripts/compare.py: into the same picture")
+                   "scores of other programs (scripts/compare.py), for the picture")
       ->allow_extra_args(false)
       ->type_name("FILE");
   verb->add_option("--seed", o->curve.seed, "of the cells that are kept")

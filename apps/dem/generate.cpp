@@ -194,7 +194,7 @@ void add_generate(CLI::App& app, Shell& shell) {
       "  dem generate sketch:wall drawing.png wall.tif --median 2\n"
       "  dem generate skeleton lines.gpkg land.tif --size 800 --origin 305000,4910000\n"
       "Generators: " +
-          generator_names() + " (their settings: dem methods NAME)",
+          generator_names() + "\n(their settings: dem methods NAME)",
       [o, &shell] { return generate(*o, shell); });
   verb->add_option("NAME", o->name, "what to make, NAME or NAME:PRESET")->required()->type_name("");
   verb->add_option("FILES", o->files,

@@ -95,11 +95,11 @@ void add_supersample(CLI::App& app, Shell& shell) {
           [o](const std::string& what) {
             o->super.preserve = what == "heights" ? Preserve::heights : Preserve::means;
           },
-          "heights: met at the coarse centres; block-mean: of each coarse cell; default heights")
+          "heights (default): met at the coarse centres; block-mean")
       ->check(CLI::IsMember({"heights", "block-mean"}).description(""))
       ->type_name("WHAT");
   verb->add_flag("--roughness", o->roughness,
-                 "as rough below the old cell size as the terrain would be (a random surface)");
+                 "a random surface, as rough below the old cell size as terrain is");
   verb->add_option("--seed", o->seed, "of the roughness")->type_name("N")->capture_default_str();
   verb->add_option("-m,--method", o->method, "how to fill between (see dem methods)")
       ->type_name("NAME")
