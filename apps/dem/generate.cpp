@@ -193,7 +193,7 @@ void add_generate(CLI::App& app, Shell& shell) {
       "  dem generate noise part.tif --size 512 --crs EPSG:32619 --origin 305000,4910000 -s H=0.9\n"
       "  dem generate sketch:wall drawing.png wall.tif --median 2\n"
       "  dem generate skeleton lines.gpkg land.tif --size 800 --origin 305000,4910000\n"
-      "Generators: " +
+      "Names: " +
           generator_names() + "\n(their settings: dem methods NAME)",
       [o, &shell] { return generate(*o, shell); });
   verb->add_option("NAME", o->name, "what to make, NAME or NAME:PRESET")->required()->type_name("");
