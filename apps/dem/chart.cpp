@@ -15,7 +15,7 @@ constexpr const char* kColours[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
                                     "#E69F00", "#56B4E9", "#000000", "#777777"};
 constexpr int kMarks = 8;
 
-constexpr double kPlotWidth = 470, kPlotHeight = 380, kLeft = 74, kRight = 120, kTop = 84,
+constexpr double kPlotWidth = 470, kPlotHeight = 380, kLeft = 74, kRight = 175, kTop = 84,
                  kBottom = 84, kPanelWidth = kLeft + kPlotWidth + kRight;
 
 std::string escaped(const std::string& text) {

@@ -51,7 +51,7 @@ struct CurveOptions {
   std::uint64_t seed = 1;
   std::vector<Score> rivals{};  ///< of other programs, measured elsewhere: into the same picture
 
-  /// Every fill method, and those presets called `paper`.
+  /// Every fill method but that for contour lines, and those presets called `paper`.
   static std::vector<std::string> curve_methods();
 };
 
