@@ -467,6 +467,27 @@ TEST(SplineSigma, IsZeroAtDataAndGrowsAwayFromThem) {
   }
 }
 
+TEST(FillSpline, ScalesTheRoughnessOfARealisation) {
+  const Dem dem = masked(terrain_dem({96, 80}), [](int x, int) { return x < 20 || x > 70; });
+  const auto rms_from_smooth = [&](double roughness) {
+    const Filled smooth = fill_spline(dem),
+                 rough = fill_spline(dem, {.realisation = 1, .roughness = roughness});
+    double sum = 0;
+    for (std::size_t i = 0; i < dem.size().cells(); ++i) {
+      const double d = double(rough.z.cells()[i]) - double(smooth.z.cells()[i]);
+      if (dem.known.cells()[i]) {
+        EXPECT_EQ(d, 0);
+      }
+      sum += d * d;
+    }
+    return std::sqrt(sum);
+  };
+  EXPECT_EQ(rms_from_smooth(0), 0);
+  const double once = rms_from_smooth(1);
+  EXPECT_GT(once, 1);
+  EXPECT_NEAR(rms_from_smooth(2), 2 * once, 1e-3 * once);
+}
+
 TEST(FillSpline, IsLessCertainWhereTheGroundIsRough) {
   // Bumps in the west, a gentle slope in the east, a tenth of the cells known.
   Dem dem{Raster<float>({128, 64}), Mask({128, 64}), {}, {}};

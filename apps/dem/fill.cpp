@@ -20,6 +20,7 @@ const std::vector<std::pair<std::string, CellType>> kTypes{
 struct Options {
   std::string in, out, sigma;
   std::optional<int> realisation;
+  std::string roughness;  // "auto" or a number
   std::optional<std::uint64_t> seed;
   std::string method{default_fill_method()};
   std::vector<std::string> set;
@@ -53,6 +54,10 @@ ChosenMethod choose(const Options& o) {
   if (!o.sigma.empty()) add_setting(chosen, "sigma", "law", "--sigma");
   if (o.realisation)
     add_setting(chosen, "realisation", std::to_string(*o.realisation), "--realisation");
+  if (!o.roughness.empty()) {
+    add_setting(chosen, "realisation", "1", "--roughness");
+    if (o.roughness != "auto") add_setting(chosen, "roughness", o.roughness, "--roughness");
+  }
   if (o.seed) add_setting(chosen, "seed", std::to_string(*o.seed), "--seed");
   const Filled trial = chosen.method->fill(one_cell(), chosen.settings, {});
   if (!o.sigma.empty() && trial.sigma.empty())
@@ -309,7 +314,7 @@ void add_fill(CLI::App& app, Shell& shell) {
       app, shell, "fill", "Fill the holes of a DEM; known cells stay as they are, bit for bit",
       "  dem fill N36E008.hgt filled.hgt\n"
       "  dem fill sparse.tif filled.tif --sigma sigma.tif           # and how sure each cell is\n"
-      "  dem fill sparse.tif rough.tif --realisation 1              # as rough as the terrain\n"
+      "  dem fill sparse.tif rough.tif --roughness auto --seed 7    # as rough as the terrain\n"
       "  dem fill coast.tif filled.tif --method mcmd --inner-only   # fast; not the border's "
       "voids\n"
       "Methods: " +
@@ -327,6 +332,9 @@ void add_fill(CLI::App& app, Shell& shell) {
       ->type_name("KEY=VALUE");
   verb->add_option("--sigma", o->sigma, "also write the standard deviation of each cell, in metres")
       ->type_name("FILE");
+  verb->add_option("--roughness", o->roughness,
+                   "gaps as rough as the terrain around (auto), or VALUE times that; 0 at rims")
+      ->type_name("auto|VALUE");
   verb->add_option("--realisation", o->realisation,
                    "the K-th random surface through the data, as rough as the terrain")
       ->check(CLI::Range(1, 1000000).description(""))

@@ -188,7 +188,6 @@ void add_generate(CLI::App& app, Shell& shell) {
   const auto o = std::make_shared<Options>();
   auto* verb = add_verb(
       app, shell, "generate", "Terrain from nothing, or from an image",
-      "  dem generate noise hills.tif\n"
       "  dem generate noise:foothills range.tif --size 2049 --cell 10 --seed 7\n"
       "  dem generate noise part.tif --size 512 --crs EPSG:32619 --origin 305000,4910000 -s H=0.9\n"
       "  dem generate sketch:wall drawing.png wall.tif --median 2\n"

@@ -47,6 +47,8 @@ struct SplineOptions {
   int realisations = 16;
   /// Return the k-th random surface through the data, as rough as the terrain; 0: the spline.
   int realisation = 0;
+  /// How rough a realisation is, over what the terrain around each gap is; 0: smooth.
+  double roughness = 1;
   std::uint64_t seed = 1;
 };
 std::vector<Field> fields(SplineOptions& options);

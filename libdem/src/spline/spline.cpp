@@ -303,7 +303,7 @@ void sample(const Dem& dem, const SplineOptions& options, const ChosenSprings& c
     for (int row = 0; row < dem.size().rows; ++row)
       for (int col = 0; col < dem.size().cols; ++col)
         if (!dem.known(col, row))
-          x.row(row)[col] += uncertainty.scale_at(col, row) * d.row(row)[col];
+          x.row(row)[col] += options.roughness * uncertainty.scale_at(col, row) * d.row(row)[col];
   }
 }
 
@@ -457,6 +457,11 @@ std::vector<Field> fields(SplineOptions& o) {
        {0, 1000000},
        "",
        "return the k-th random surface through the data; 0: the spline itself"},
+      {"roughness",
+       o.roughness,
+       {0, 100},
+       "",
+       "of a realisation, over that of the terrain around each gap"},
       {"seed", o.seed, "seed of the random surfaces"},
   };
 }
