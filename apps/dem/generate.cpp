@@ -136,14 +136,15 @@ int generate(const Options& o, Shell& shell) {
   const std::string& out = o.files.back();
   check_writable(out, shell.overwrite);
   const Run run = shell.run();
-  Raster<float> image = read_image(o, *chosen.generator, run.part(0, 0.1));
-  const Size size = canvas_size(o, *chosen.generator, image);
+  Drawing drawing{read_image(o, *chosen.generator, run.part(0, 0.1))};
+  const Size size = canvas_size(o, *chosen.generator, drawing.grey);
   const Canvas canvas = chosen.generator->globe ? globe(o, size) : plane(o, size);
   check_canvas(canvas);
-  if (!chosen.generator->image.empty() && image.empty()) image = draw_vectors(o.files[0], canvas);
+  if (!chosen.generator->image.empty() && drawing.grey.empty())
+    drawing = draw_vectors(o.files[0], canvas);
 
   const auto start = std::chrono::steady_clock::now();
-  Dem dem = chosen.generator->generate(canvas, image, chosen.settings, run.part(0.1, 0.7));
+  Dem dem = chosen.generator->generate(canvas, drawing, chosen.settings, run.part(0.1, 0.7));
   dem.z = median_filter(dem.z, 5, o.median, run.part(0.7, 0.8));
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -105,8 +105,9 @@ const std::vector<Generator>& generators() {
           generate_riverland),
       make_image_generator<RiverLandOptions>(
           "painted_land", "rivers that grow into painted land, and terrain that drains into them",
-          "teoh2009", "black: sea; white: land; grey: land with rocky outcrops", {},
-          generate_painted_land),
+          "teoh2009",
+          "black: sea; white: land; grey: land with rocky outcrops; of a vector layer also ridges",
+          {}, generate_painted_land),
       make_image_generator<SketchOptions>(
           "sketch", "a drawing of heights, filled by MCMD", "belhadj2007",
           "white: unknown; greys: heights from black to white",

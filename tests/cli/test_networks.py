@@ -24,8 +24,9 @@ def island(col, row):
     return 0 if not inside else 128 if col > 90 else 255
 
 
-def feature(kind, shape, coordinates):
-    return {"type": "Feature", "properties": {"kind": kind}, "geometry": {"type": shape, "coordinates": coordinates}}
+def feature(kind, shape, coordinates, **more):
+    return {"type": "Feature", "properties": {"kind": kind, **more},
+            "geometry": {"type": shape, "coordinates": coordinates}}
 
 
 def geojson(*features):
@@ -66,6 +67,24 @@ class Networks(CliTest):
                 z = self.heights("x.asc")
                 self.assertEqual(z[2][2], 0)
                 self.assertGreater(max(map(max, z)), 20)
+
+    def test_a_drawn_ridge_rises_above_painted_land(self):
+        ring = [[600, -600], [3300, -600], [3300, -3300], [600, -3300], [600, -600]]
+        line = [[1500, -1900], [2400, -1900]]
+        words = ["x.asc", "--size", str(SIDE), "--cell", "30", "--origin", "0,0", "--overwrite", "-s", "segment_m=300"]
+        highest = []
+        for height in (50, 800):
+            self.write("ridge.geojson", geojson(feature("land", "Polygon", [ring]),
+                                                feature("ridge", "LineString", line, height_m=height, width_m=400)))
+            self.succeeds("generate", "painted_land", "ridge.geojson", *words)
+            z = self.heights("x.asc")
+            highest.append(max(z[row][65] for row in range(55, 75)))
+        self.assertGreater(highest[1], highest[0] + 300)
+        self.write("ridge.geojson", geojson(feature("land", "Polygon", [ring]),
+                                            feature("ridge", "LineString", line, height_m=80)))
+        done = self.dem("generate", "painted_land", "ridge.geojson", *words)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("ridge 1: height_m = 80, width_m = 0; must both be above 0", done.stderr)
 
     def test_a_sketch_keeps_its_heights_and_the_median_smooths_the_wall(self):
         self.write("wall.pgm", pgm(lambda c, r: 100 if 60 < c < 70 else 255))

@@ -1,6 +1,8 @@
 #pragma once
 // Where a terrain that is made from nothing shall lie.
 
+#include <vector>
+
 #include "dem/dem.h"
 
 namespace dem {
@@ -15,6 +17,18 @@ struct Canvas {
   /// cells, so that a part of a terrain, or the same terrain in finer cells, has the same heights.
   double east_m(int col) const;
   double north_m(int row) const;
+};
+
+/// A control point of a ridge that a user drew, in cells; the ridge is 2 width_m wide at its foot.
+struct RidgePoint {
+  double col = 0, row = 0;
+  double height_m = 0, width_m = 0;
+};
+
+/// What a user drew for a generator to start from.
+struct Drawing {
+  Raster<float> grey;  ///< levels from 0 (black) to 1 (white); the canvas has its size
+  std::vector<std::vector<RidgePoint>> ridges{};
 };
 
 /// Throws std::invalid_argument unless the canvas has 1 to 2^30 cells, a finite spacing above 0 and

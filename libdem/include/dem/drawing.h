@@ -16,10 +16,11 @@ bool is_vector_file(const std::string& path);
 /// Draws the lines and polygons of a vector layer as an image for a generator: in the grey of
 /// their field `grey` (0 black to 1 white), or that of their field `kind`: ridge 0.75, river 0.25,
 /// land 1, rocks 0.5, sea 0. Later features cover earlier ones. What nothing covers is black where
-/// there are polygons, else white.
+/// there are polygons, else white. Lines of kind ridge that have fields height_m and width_m (half
+/// of the foot) are given back as ridges as well.
 /// Needs:    the layer alone in its file, with coordinates in the canvas's system.
 /// Throws:   IoError.
-Raster<float> draw_vectors(const std::string& path, const Canvas& canvas);
+Drawing draw_vectors(const std::string& path, const Canvas& canvas);
 
 /// Each height as the median of the side x side cells around it, `passes` times (OpenImageIO's;
 /// at the rim, of the cells there are).

@@ -4,6 +4,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -22,11 +23,9 @@ struct Generator {
   std::string image;   ///< what the image shows that it starts from; "" when it takes none
   bool globe = false;  ///< whether the canvas is a grid of degrees on the whole Earth
 
-  /// Makes a terrain; all its cells are known. `image` has grey levels from 0 (black) to 1 (white),
-  /// and the canvas its size; it is empty when the generator takes none.
-  /// Throws std::invalid_argument for bad settings, sizes or images, Cancelled.
-  std::function<Dem(const Canvas&, const Raster<float>& image, const Settings&, const Run&)>
-      generate;
+  /// Makes a terrain; all its cells are known. The drawing is empty when the generator takes none.
+  /// Throws std::invalid_argument for bad settings, sizes or drawings, Cancelled.
+  std::function<Dem(const Canvas&, const Drawing&, const Settings&, const Run&)> generate;
 };
 
 /// A row of the table from an Options struct with `fields(Options&)` and a function
@@ -35,23 +34,23 @@ template <class Options, class Generate>
 Generator make_generator(std::string name, std::string summary, std::string citation,
                          std::vector<Preset> presets, Generate generate) {
   Options defaults;
-  return {std::move(name),
-          std::move(summary),
-          std::move(citation),
-          describe(fields(defaults)),
-          std::move(presets),
-          "",
-          false,
-          [generate](const Canvas& canvas, const Raster<float>&, const Settings& settings,
-                     const Run& run) {
-            Options options;
-            apply(settings, fields(options));
-            return on_canvas(canvas, generate(canvas, options, run));
-          }};
+  return {
+      std::move(name),
+      std::move(summary),
+      std::move(citation),
+      describe(fields(defaults)),
+      std::move(presets),
+      "",
+      false,
+      [generate](const Canvas& canvas, const Drawing&, const Settings& settings, const Run& run) {
+        Options options;
+        apply(settings, fields(options));
+        return on_canvas(canvas, generate(canvas, options, run));
+      }};
 }
 
-/// The same for a function that starts from an image:
-/// `Raster<float>(const Canvas&, const Raster<float>& image, const Options&, const Run&)`.
+/// The same for a function that starts from a drawing:
+/// `Raster<float>(const Canvas&, const Drawing& or its grey levels, const Options&, const Run&)`.
 template <class Options, class Generate>
 Generator make_image_generator(std::string name, std::string summary, std::string citation,
                                std::string image, std::vector<Preset> presets, Generate generate) {
@@ -63,11 +62,15 @@ Generator make_image_generator(std::string name, std::string summary, std::strin
           std::move(presets),
           std::move(image),
           false,
-          [generate](const Canvas& canvas, const Raster<float>& drawing, const Settings& settings,
+          [generate](const Canvas& canvas, const Drawing& drawing, const Settings& settings,
                      const Run& run) {
             Options options;
             apply(settings, fields(options));
-            return on_canvas(canvas, generate(canvas, drawing, options, run));
+            if constexpr (std::is_invocable_v<Generate, const Canvas&, const Drawing&,
+                                              const Options&, const Run&>)
+              return on_canvas(canvas, generate(canvas, drawing, options, run));
+            else
+              return on_canvas(canvas, generate(canvas, drawing.grey, options, run));
           }};
 }
 

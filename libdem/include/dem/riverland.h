@@ -12,12 +12,6 @@
 
 namespace dem {
 
-/// A control point of a user's ridge, in cells; the ridge is 2 width_m wide at its foot.
-struct RidgePoint {
-  double col = 0, row = 0;
-  double height_m = 0, width_m = 0;
-};
-
 /// What a user painted.
 struct Land {
   Mask land;     ///< 1: land, 0: sea; all of it may be land
@@ -109,8 +103,8 @@ std::vector<Field> fields(GrownLandOptions& options);
 Raster<float> generate_riverland(const Canvas& canvas, const GrownLandOptions& options = {},
                                  const Run& run = {});
 
-/// make_riverland on the land of a drawing, as read_land() sees it.
-Raster<float> generate_painted_land(const Canvas& canvas, const Raster<float>& drawing,
+/// make_riverland on the land of a drawing, as read_land() sees it, with the drawing's ridges.
+Raster<float> generate_painted_land(const Canvas& canvas, const Drawing& drawing,
                                     const RiverLandOptions& options = {}, const Run& run = {});
 
 }  // namespace dem

@@ -7,7 +7,10 @@
 #include <ogr_api.h>
 
 #include <map>
+#include <optional>
 #include <stdexcept>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "dem/io.h"
@@ -46,9 +49,45 @@ double grey_of(const std::string& path, OGRFeatureH feature, int grey_field, int
   return found->second;
 }
 
+/// A number field of a feature; none when it is not set.
+std::optional<double> number_of(OGRFeatureH feature, const char* name) {
+  const int field = OGR_F_GetFieldIndex(feature, name);
+  if (field < 0 || !OGR_F_IsFieldSetAndNotNull(feature, field)) return {};
+  return OGR_F_GetFieldAsDouble(feature, field);
+}
+
+/// The points of a line, in cells.
+std::vector<RidgePoint> points_of(OGRGeometryH line, const Canvas& canvas, double height_m,
+                                  double width_m) {
+  const auto& w = canvas.ref.to_world;
+  std::vector<RidgePoint> points;
+  for (int i = 0; i < OGR_G_GetPointCount(line); ++i)
+    points.push_back({(OGR_G_GetX(line, i) - w[0]) / w[1], (OGR_G_GetY(line, i) - w[3]) / w[5],
+                      height_m, width_m});
+  return points;
+}
+
+/// Adds the lines of a feature when it is a ridge with a height and a width.
+void add_ridges(const std::string& path, OGRFeatureH feature, const Canvas& canvas,
+                std::vector<std::vector<RidgePoint>>& ridges) {
+  const int kind = OGR_F_GetFieldIndex(feature, "kind");
+  if (kind < 0 || std::string_view(OGR_F_GetFieldAsString(feature, kind)) != "ridge") return;
+  const auto height = number_of(feature, "height_m"), width = number_of(feature, "width_m");
+  if (!height && !width) return;
+  if (!height || !width || !(*height > 0) || !(*width > 0))
+    throw IoError(path, fmt::format("ridge {}: height_m = {}, width_m = {}; must both be above 0",
+                                    OGR_F_GetFID(feature), height.value_or(0), width.value_or(0)));
+  const OGRGeometryH geometry = OGR_F_GetGeometryRef(feature);
+  const int parts = OGR_G_GetGeometryCount(geometry);  // 0 for a single line
+  if (parts == 0) ridges.push_back(points_of(geometry, canvas, *height, *width));
+  for (int i = 0; i < parts; ++i)
+    ridges.push_back(points_of(OGR_G_GetGeometryRef(geometry, i), canvas, *height, *width));
+}
+
 struct Shapes {
   std::vector<OGRGeometryH> geometries;
   std::vector<double> greys;
+  std::vector<std::vector<RidgePoint>> ridges;
   bool polygons = false;
 
   Shapes() = default;
@@ -59,7 +98,7 @@ struct Shapes {
   }
 };
 
-void read_shapes(const std::string& path, Shapes& shapes) {
+void read_shapes(const std::string& path, const Canvas& canvas, Shapes& shapes) {
   const VectorLayer layer(path, "");
   const OGRFeatureDefnH fields = OGR_L_GetLayerDefn(layer.get());
   const int grey = OGR_FD_GetFieldIndex(fields, "grey"),
@@ -74,6 +113,7 @@ void read_shapes(const std::string& path, Shapes& shapes) {
     shapes.greys.push_back(grey_of(path, feature, grey, kind));
     shapes.geometries.push_back(OGR_G_Clone(geometry));
     shapes.polygons |= dimension == 2;
+    if (dimension == 1) add_ridges(path, feature, canvas, shapes.ridges);
     return true;
   });
   if (shapes.geometries.empty()) throw IoError(path, "holds no line and no polygon");
@@ -85,9 +125,9 @@ bool is_vector_file(const std::string& path) {
   return !open(path, GDAL_OF_RASTER) && open(path, GDAL_OF_VECTOR);
 }
 
-Raster<float> draw_vectors(const std::string& path, const Canvas& canvas) {
+Drawing draw_vectors(const std::string& path, const Canvas& canvas) {
   Shapes shapes;
-  read_shapes(path, shapes);
+  read_shapes(path, canvas, shapes);
   Raster<float> drawing(canvas.size, shapes.polygons ? 0.0F : 1.0F);
   const GdalErrors errors;
   const DatasetPtr dataset =
@@ -101,7 +141,7 @@ Raster<float> draw_vectors(const std::string& path, const Canvas& canvas) {
       dataset.get(), 1, &band, int(shapes.geometries.size()), shapes.geometries.data(), nullptr,
       nullptr, shapes.greys.data(), nullptr, nullptr, nullptr);
   if (error != CE_None) errors.fail(path, "cannot be drawn on the canvas");
-  return drawing;
+  return {std::move(drawing), std::move(shapes.ridges)};
 }
 
 Raster<float> median_filter(const Raster<float>& z, int side, int passes, const Run& run) {

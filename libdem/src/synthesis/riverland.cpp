@@ -201,9 +201,11 @@ Raster<float> generate_riverland(const Canvas& canvas, const GrownLandOptions& o
   return make_riverland(land, canvas.spacing, o.riverland, run.part(0.1, 1)).z;
 }
 
-Raster<float> generate_painted_land(const Canvas& canvas, const Raster<float>& drawing,
+Raster<float> generate_painted_land(const Canvas& canvas, const Drawing& drawing,
                                     const RiverLandOptions& o, const Run& run) {
-  return make_riverland(read_land(drawing), canvas.spacing, o, run).z;
+  Land land = read_land(drawing.grey);
+  land.ridges = drawing.ridges;
+  return make_riverland(land, canvas.spacing, o, run).z;
 }
 
 }  // namespace dem
