@@ -333,7 +333,7 @@ void add_fill(CLI::App& app, Shell& shell) {
   verb->add_option("--sigma", o->sigma, "also write the standard deviation of each cell, in metres")
       ->type_name("FILE");
   verb->add_option("--roughness", o->roughness,
-                   "gaps as rough as the terrain around (auto), or VALUE times that; 0 at rims")
+                   "gaps as rough as the terrain around (auto), or VALUE times that")
       ->type_name("auto|VALUE");
   verb->add_option("--realisation", o->realisation,
                    "the K-th random surface through the data, as rough as the terrain")
