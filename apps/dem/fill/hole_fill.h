@@ -10,8 +10,8 @@
 #include "common.h"
 #include "dem/holes.h"
 #include "dem/methods.h"
-#include "fill_layers.h"
-#include "hole_choice.h"
+#include "fill/fill_layers.h"
+#include "fill/hole_choice.h"
 
 namespace dem::app {
 

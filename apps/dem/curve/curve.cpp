@@ -3,8 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
-#include "budget.h"
-#include "experiment.h"
+#include "curve/budget.h"
+#include "curve/experiment.h"
 #include "verbs.h"
 
 namespace dem::app {

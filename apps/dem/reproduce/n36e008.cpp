@@ -10,7 +10,7 @@
 #include "dem/geodesy.h"
 #include "dem/holes.h"
 #include "dem/sample.h"
-#include "reproduce.h"
+#include "reproduce/reproduce.h"
 
 namespace dem::app {
 namespace {

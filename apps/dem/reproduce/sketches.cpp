@@ -1,6 +1,6 @@
 // The sparse DEMs that the figures start from.
 
-#include "sketches.h"
+#include "reproduce/sketches.h"
 
 #include <algorithm>
 #include <cmath>

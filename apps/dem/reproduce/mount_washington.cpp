@@ -4,11 +4,11 @@
 #include <cmath>
 #include <filesystem>
 
+#include "curve/experiment.h"
 #include "dem/geodesy.h"
 #include "dem/sample.h"
 #include "dem/spline.h"
-#include "experiment.h"
-#include "reproduce.h"
+#include "reproduce/reproduce.h"
 
 namespace dem::app {
 namespace {

@@ -1,4 +1,4 @@
-#include "hole_choice.h"
+#include "fill/hole_choice.h"
 
 #include <CLI/CLI.hpp>
 #include <array>

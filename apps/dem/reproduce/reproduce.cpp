@@ -1,6 +1,6 @@
 // dem reproduce: published results, end to end.
 
-#include "reproduce.h"
+#include "reproduce/reproduce.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>

@@ -1,7 +1,7 @@
 #pragma once
 // How many cells must be kept for a wanted error, by the way they are chosen.
 
-#include "experiment.h"
+#include "curve/experiment.h"
 
 namespace dem::app {
 

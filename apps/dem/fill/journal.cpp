@@ -1,4 +1,4 @@
-#include "journal.h"
+#include "fill/journal.h"
 
 #include <sys/file.h>
 #include <unistd.h>

@@ -1,4 +1,4 @@
-#include "experiment.h"
+#include "curve/experiment.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -8,7 +8,7 @@
 #include <map>
 #include <set>
 
-#include "chart.h"
+#include "curve/chart.h"
 #include "dem/baselines.h"
 #include "dem/geodesy.h"
 #include "dem/sample.h"

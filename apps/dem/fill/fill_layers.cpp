@@ -1,4 +1,4 @@
-#include "fill_layers.h"
+#include "fill/fill_layers.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "dem/raster_stream.h"
-#include "hole_fill.h"
-#include "journal.h"
+#include "fill/hole_fill.h"
+#include "fill/journal.h"
 
 namespace dem::app {
 

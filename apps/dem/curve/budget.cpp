@@ -1,9 +1,9 @@
-#include "budget.h"
+#include "curve/budget.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "chart.h"
+#include "curve/chart.h"
 #include "dem/baselines.h"
 #include "dem/greedy.h"
 #include "dem/sample.h"

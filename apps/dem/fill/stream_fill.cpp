@@ -1,4 +1,4 @@
-#include "stream_fill.h"
+#include "fill/stream_fill.h"
 
 #include <unistd.h>
 

@@ -1,4 +1,4 @@
-#include "hole_fill.h"
+#include "fill/hole_fill.h"
 
 #include <algorithm>
 #include <bit>

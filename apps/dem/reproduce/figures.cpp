@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "chart.h"
+#include "curve/chart.h"
 #include "dem/image.h"
-#include "reproduce.h"
-#include "sketches.h"
+#include "reproduce/reproduce.h"
+#include "reproduce/sketches.h"
 
 namespace dem::app {
 namespace {

@@ -1,4 +1,4 @@
-#include "chart.h"
+#include "curve/chart.h"
 
 #include <fmt/format.h>
 

@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "dem/baselines.h"
-#include "hole_fill.h"
-#include "stream_fill.h"
+#include "fill/hole_fill.h"
+#include "fill/stream_fill.h"
 #include "verbs.h"
 
 namespace dem::app {
