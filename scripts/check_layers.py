@@ -18,7 +18,7 @@ LAYERS = {
     "methods": ["find_row", "generators", "greedy", "gridding", "methods", "supersample"],
     "io": ["aligned_reader", "baselines", "cells", "crs", "drawing", "gdal_raster", "gdal_support", "geodesy", "heightmap",
            "hgt", "image", "io", "las", "lattices", "nodata", "ogr_layers", "oiio_support", "point_files", "point_reading",
-           "point_text", "point_vectors", "polygons", "raster_stream", "staged_file"],
+           "point_text", "point_vectors", "polygons", "raster_stream", "raster_writer", "staged_file", "tile_folder"],
 }
 
 # An algorithm that is written in several private files. They belong to it alone.

@@ -81,26 +81,13 @@ void compare(const Tile& a, const Edge& of_a, const Tile& b, const Edge& of_b, c
   seams.push_back(seam);
 }
 
-/// The rasters of the folder, by name; what cannot be read is an error, what is none is not looked
-/// at.
 std::vector<Tile> read_tiles(const Options& options, const Run& run) {
-  std::error_code error;
-  std::vector<fs::path> paths;
-  for (const auto& entry : fs::directory_iterator(options.folder, error)) {
-    const std::string name = entry.path().filename().string();
-    const bool raster = name.ends_with(".hgt") || name.ends_with(".hgt.gz") ||
-                        name.ends_with(".hgt.zip") || name.ends_with(".tif") ||
-                        name.ends_with(".tiff");
-    if (raster && !name.starts_with(".")) paths.push_back(entry.path());
-  }
-  if (error) throw IoError(options.folder, error.message());
-  if (paths.empty()) throw IoError(options.folder, "holds no .hgt and no .tif");
-  std::ranges::sort(paths);
+  const std::vector<std::string> paths = tiles_in(options.folder);
   std::vector<Tile> tiles;
   for (std::size_t i = 0; i < paths.size(); ++i) {
     run.report(double(i) / double(paths.size()), "reading tiles");
-    tiles.push_back(tile_of(paths[i].filename().string(),
-                            read_dem(paths[i].string(), options.read, {run.threads, {}}).dem));
+    tiles.push_back(tile_of(fs::path(paths[i]).filename().string(),
+                            read_dem(paths[i], options.read, {run.threads, {}}).dem));
   }
   return tiles;
 }

@@ -142,6 +142,7 @@ std::string percent_of(std::size_t cells, std::size_t all) {
 
 bool holds_metadata(const std::string& path, const std::string& format) {
   if (!format.empty()) return format != "HGT";
+  if (path.ends_with('/')) return false;  // a folder of .hgt
   std::string name = fs::path(path).filename().string();
   std::ranges::transform(name, name.begin(), [](unsigned char c) { return char(std::tolower(c)); });
   return !name.ends_with(".hgt") && !name.ends_with(".hgt.gz") && !name.ends_with(".hgt.zip");

@@ -58,6 +58,13 @@ def limit_file_size(limit):
     return limiter
 
 
+def limit_memory(limit):
+    def limiter():
+        resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
+
+    return limiter
+
+
 class CliTest(unittest.TestCase):
     def setUp(self):
         self.dir = tempfile.mkdtemp(prefix="dem-cli-")

@@ -4,11 +4,12 @@ import json
 import os
 import random
 import signal
+import struct
 import subprocess
 import time
 import unittest
 
-from support import DEM, VOID, CliTest, asc_text, height, hgt_bytes, limit_file_size, main, read_hgt
+from support import DEM, VOID, CliTest, asc_text, height, hgt_bytes, limit_file_size, limit_memory, main, read_hgt
 
 KILLS = int(os.environ.get("DEM_KILLS", "2"))
 
@@ -205,8 +206,87 @@ class Check(HoleTest):
         self.fails(2, "check", "nowhere", says=["nowhere"])
 
 
+class Tiles(HoleTest):
+    memory = ["--memory", "400M"]
+
+    def tiles(self):
+        """Two tiles of 1201 x 1201, and a hole across the edge that they share."""
+        os.makedirs(self.path("tiles"))
+        line = [height(c, 0) for c in range(2401)]
+        for tile in range(2):
+            rows = []
+            for r in range(1201):
+                row = [v + r // 3 for v in line[1200 * tile:1200 * tile + 1201]]
+                if 5 <= r < 12:
+                    for c in range(1196, 1205):
+                        if 0 <= c - 1200 * tile < 1201:
+                            row[c - 1200 * tile] = VOID
+                rows.append(struct.pack(">1201h", *row))
+            self.write(f"tiles/N10E01{tile}.hgt", b"".join(rows))
+
+    def test_a_folder_of_hgt_is_one_raster_and_becomes_such_a_folder(self):
+        self.tiles()
+        report = self.json("fill", "tiles", "out/", *self.memory)
+        self.assertEqual((report["voids"], report["filled"], report["left"]), (1, 63, 0))
+        self.assertEqual(self.json("check", "out")["bad_edges"], 0)
+        for tile in range(2):
+            before, after = (read_hgt(self.path(f"{d}/N10E01{tile}.hgt")) for d in ("tiles", "out"))
+            self.assertNotIn(VOID, after)
+            changed = {i for i in range(1201 * 1201) if before[i] != after[i]}
+            self.assertEqual(changed, {i for i in range(1201 * 1201) if before[i] == VOID})
+        self.json("fill", "tiles", "whole/")
+        self.assertEqual(self.read("out/N10E011.hgt"), self.read("whole/N10E011.hgt"))
+        self.fails(2, "fill", "tiles", "out/", says=["out/", "N10E010.hgt", "--overwrite"])
+        self.succeeds("fill", "tiles", "out/", "--overwrite", "--resume", "-m", "mcmd")
+        self.assertEqual(sorted(os.listdir(self.path("out"))), ["N10E010.hgt", "N10E011.hgt"])
+        self.assertFalse([n for n in os.listdir(self.dir) if n.startswith(".")])
+
+    def test_a_tile_cut_short_is_named(self):
+        self.tiles()
+        os.truncate(self.path("tiles/N10E011.hgt"), 1000)
+        self.fails(2, "fill", "tiles", "out/", says=["tiles", "N10E011.hgt"])
+        self.assertFalse(os.path.exists(self.path("out")))
+
+    def test_hgt_of_any_size_is_filled_part_by_part_too(self):
+        self.hgt("N10E010.hgt", 65, lambda c, r: VOID if 20 < c < 30 and 20 < r < 40 else height(c, r))
+        self.succeeds("fill", "N10E010.hgt", "w.hgt")
+        for options in (self.memory, ["--resume"]):
+            self.succeeds("fill", "N10E010.hgt", "o.hgt", "--overwrite", *options)
+            self.assertEqual(self.read("o.hgt"), self.read("w.hgt"))
+
+    def test_folder_is_for_hgt_and_for_whole_tiles(self):
+        self.pitted()
+        self.fails(2, "fill", "a.tif", "out/", "--format", "GTiff", says=["out/", ".vrt"])
+        self.succeeds("generate", "noise", "n.tif", "--size", "40", "--cell", "30")
+        for options in ([], self.memory):
+            self.fails(2, "fill", "n.tif", "out/", *options, says=["out/", "one-degree tiles"])
+        os.mkdir(self.path("out"))
+        self.fails(2, "fill", "a.tif", "out", says=["out", "is a folder", "/"])
+
+    def test_vrt_of_tiles_holds_the_same_cells_as_one_file(self):
+        self.succeeds("generate", "noise", "n.tif", "--size", "5000x40", "--cell", "30")
+        self.succeeds("sample", "n.tif", "a.tif", "--keep", "80%")
+        self.succeeds("fill", "a.tif", "w.tif", "-m", "mcmd")
+        for options in ([], self.memory):
+            self.succeeds("fill", "a.tif", "o.vrt", "-m", "mcmd", "--overwrite", *options)
+            self.assertEqual(sorted(os.listdir(self.path("o_tiles"))), ["000_000.tif", "000_001.tif"])
+            self.assertEqual(self.cells("o.vrt"), self.cells("w.tif"))
+        self.fails(2, "fill", "a.tif", "o.vrt", says=["o.vrt", "--overwrite"])
+        os.remove(self.path("o_tiles/000_001.tif"))
+        for options in ([], self.memory):
+            self.fails(2, "fill", "o.vrt", "again.tif", *options, says=["o.vrt", "000_001.tif"])
+        self.assertFalse(os.path.exists(self.path("again.tif")))
+
+
 class AnySize(HoleTest):
     memory = ["--memory", "300M"]
+
+    def test_memory_is_a_bound_that_the_system_may_enforce(self):
+        self.succeeds("generate", "noise", "n.tif", "--size", "3000", "--cell", "30")
+        self.succeeds("sample", "n.tif", "a.tif", "--voids", "20%")
+        self.fails(2, "fill", "a.tif", "o.tif", "--whole", preexec_fn=limit_memory(900 << 20))
+        self.assert_files("n.tif", "a.tif")
+        self.succeeds("fill", "a.tif", "o.tif", *self.memory, preexec_fn=limit_memory(900 << 20))
 
     def test_part_by_part_gives_the_same_cells_as_whole(self):
         for type_, methods in (("int16", ("spline",)), ("float32", ("mcmd",)), ("int32", ("mcmd",))):
@@ -261,7 +341,7 @@ class AnySize(HoleTest):
 
     def test_formats_that_need_the_whole_raster_are_refused(self):
         self.pitted()
-        self.fails(2, "fill", "a.tif", "o.asc", *self.memory, says=["o.asc", "GTiff or COG"])
+        self.fails(2, "fill", "a.tif", "o.asc", *self.memory, says=["o.asc", "GTiff, COG"])
 
     def test_full_disk_leaves_the_old_file_and_no_journal(self):
         noise = random.Random(1)

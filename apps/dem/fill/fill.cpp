@@ -241,7 +241,7 @@ int fill(const Options& o, Shell& shell) {
 
   const FillRequest request{chosen,           o.choice,          o.whole, !o.table.empty(),
                             !o.sigma.empty(), !o.origin.empty(), o.aux,   o.water};
-  if (memory > 0 && reads_by_parts(o.in)) return fill_stream(o, request, memory, shell);
+  if (memory > 0) return fill_stream(o, request, memory, shell);
 
   const Run run = shell.run();
   DemFile file = read_dem(o.in, o.read, run.part(0, 0.2));
@@ -315,13 +315,15 @@ void add_fill(CLI::App& app, Shell& shell) {
       "  dem fill N36E008.hgt filled.hgt\n"
       "  dem fill sparse.tif filled.tif --sigma sigma.tif           # and how sure each cell is\n"
       "  dem fill sparse.tif rough.tif --roughness auto --seed 7    # as rough as the terrain\n"
-      "  dem fill coast.tif filled.tif --method mcmd --inner-only   # fast; not the border's "
-      "voids\n"
+      "  dem fill tiles/ filled/ --memory 2G                        # a folder of .hgt tiles\n"
       "Methods: " +
           method_names() + " (their settings: dem methods NAME)\n" + HoleChoice::condition_help(),
       [o, &shell] { return fill(*o, shell); });
-  verb->add_option("IN", o->in, "a DEM with holes, anything GDAL opens")->required()->type_name("");
-  verb->add_option("OUT", o->out, "the filled DEM; the format follows the extension")
+  verb->add_option("IN", o->in, "a DEM with holes, anything GDAL opens; or a folder of tiles")
+      ->required()
+      ->type_name("");
+  verb->add_option("OUT", o->out,
+                   "by extension; NAME.vrt: tiles of GeoTIFF; FOLDER/: tiles of .hgt")
       ->required()
       ->type_name("");
   verb->add_option("-m,--method", o->method, "how to fill, NAME or NAME:PRESET")

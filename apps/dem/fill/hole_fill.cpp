@@ -1,7 +1,6 @@
 #include "fill/hole_fill.h"
 
 #include <algorithm>
-#include <bit>
 #include <chrono>
 #include <cmath>
 
@@ -15,10 +14,6 @@ namespace {
 /// surroundings of holes.
 constexpr double whole_share = 0.25;
 
-/// The spline chooses its lengths from windows of at least so many cells; smaller ones hold too
-/// little ground beside the hole to choose from, and the choice would cost more than the fill.
-constexpr std::size_t cells_to_choose_from = 1 << 18;
-
 LatticeOrigin lattice_origin(const GeoRef& ref) {
   const auto& at = ref.to_world;
   const auto index = [](double position, double step) {
@@ -26,11 +21,6 @@ LatticeOrigin lattice_origin(const GeoRef& ref) {
     return std::abs(cells) < 1e15 ? std::int64_t(std::floor(cells + 0.5)) : 0;
   };
   return {index(at[0], at[1]), index(at[3], at[5])};
-}
-
-bool has_setting(const ChosenMethod& chosen, std::string_view name) {
-  return std::ranges::find(chosen.settings, name, &Settings::value_type::first) !=
-         chosen.settings.end();
 }
 
 }  // namespace
@@ -64,18 +54,6 @@ FillPlan plan_fill(const FillRequest& request, const std::vector<Hole>& holes, S
   }
   outcome.windows = plan.windows.size();
   return plan;
-}
-
-std::function<Filled(const Dem&, const Run&)> window_fill(const FillRequest& request, bool whole) {
-  const ChosenMethod& chosen = request.method;
-  ChosenMethod usual = chosen;
-  if (chosen.method->name == "spline" && !has_setting(chosen, "parameters"))
-    usual.settings.insert(usual.settings.end(), {{"parameters", "manual"}, {"L3", "4"}});
-  return [chosen, usual, whole](const Dem& dem, const Run& run) {
-    const bool choose = whole || dem.size().cells() >= cells_to_choose_from;
-    const ChosenMethod& now = choose ? chosen : usual;
-    return now.method->fill(dem, now.settings, run);
-  };
 }
 
 void account(const HolePatch& patch, const FillPlan& plan, FillOutcome& outcome) {
@@ -121,7 +99,9 @@ FillOutcome fill_holes_of(Dem& dem, const FillRequest& request, const Run& run) 
   HoleWork work;
   work.flat_water = !plan.whole;
   work.rim_errors = request.rim_errors;
-  work.fill = window_fill(request, plan.whole);
+  work.fill = [&](const Dem& window, const Run& how) {
+    return request.method.method->fill(window, request.method.settings, how);
+  };
   work.read = [&](const Box& box) {
     WindowData data{crop(dem, box, spacing[std::size_t(box.row + box.rows / 2)]), {}, {}};
     layers.add(data, box);

@@ -62,10 +62,6 @@ struct FillPlan {
 FillPlan plan_fill(const FillRequest& request, const std::vector<Hole>& holes, Size raster,
                    const GeoRef& ref, FillOutcome& outcome);
 
-/// The method's fill for one window: the spline takes its usual lengths in windows too small to
-/// choose them from.
-std::function<Filled(const Dem&, const Run&)> window_fill(const FillRequest& request, bool whole);
-
 /// Adds what a patch says to the outcome.
 void account(const HolePatch& patch, const FillPlan& plan, FillOutcome& outcome);
 

@@ -116,7 +116,7 @@ void StreamFill::fill(const FillRequest& request, const Run& run) {
   const Size size = reader_.size();
   plan_ = plan_fill(request, outcome_.holes, size, reader_.ref(), outcome_);
 
-  const std::size_t fixed = program_bytes + block_cache(options_.memory) +
+  const std::size_t fixed = program_bytes + block_cache(options_.memory) + reader_.held_bytes() +
                             outcome_.holes.size() * (sizeof(Hole) + sizeof(HoleOutcome) + 128) +
                             std::size_t(size.cols) * 256 * 8 + 40 * mega;
   const std::size_t cell_bytes = bytes_a_cell(request);
@@ -141,7 +141,8 @@ void StreamFill::fill(const FillRequest& request, const Run& run) {
   });
   outcome_.windows = plan_.windows.size();
 
-  const fs::path out(options_.out);
+  fs::path out(options_.out);
+  if (!out.has_filename()) out = out.parent_path();  // a folder, "tiles/"
   const std::string hidden =
       (out.parent_path() / fmt::format(".{}", out.filename().string())).string();
   journal_path_ = hidden + (options_.resume ? ".journal" : fmt::format(".{}", getpid()));
@@ -163,7 +164,9 @@ void StreamFill::fill(const FillRequest& request, const Run& run) {
   work.flat_water = !plan_.whole;
   work.rim_errors = request.rim_errors;
   work.memory_cells = memory_cells;
-  work.fill = window_fill(request, plan_.whole);
+  work.fill = [&](const Dem& window, const Run& how) {
+    return request.method.method->fill(window, request.method.settings, how);
+  };
   work.read = [&](const Box& box) {
     WindowData data{reader_.read(box), {}, {}};
     data.dem.spacing = spacing_[std::size_t(box.row + box.rows / 2)];

@@ -19,6 +19,9 @@ struct GeoRef {
   bool operator==(const GeoRef&) const = default;
 };
 
+/// The georeference of a part of a raster.
+GeoRef crop(GeoRef ref, const Box& box);
+
 /// Size of a cell in metres. On a geographic grid dx changes from row to row: one Spacing then
 /// stands for the middle row (dem/geodesy.h gives one for every row).
 struct Spacing {
@@ -37,6 +40,9 @@ struct Dem {
 
   Size size() const { return z.size(); }
 };
+
+/// A part of a DEM, with a spacing of its own; z is 0 where unknown.
+Dem crop(const Dem& dem, const Box& box, Spacing spacing);
 
 /// One number that a reconstruction reports of itself, e.g. {"iterations", 7, ""}.
 struct Figure {

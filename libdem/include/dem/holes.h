@@ -36,19 +36,6 @@ Mask inner_voids(const Mask& known);
 
 // ---- The inventory
 
-/// A rectangle of cells.
-struct Box {
-  int col = 0, row = 0, cols = 0, rows = 0;
-
-  Size size() const { return {cols, rows}; }
-  std::size_t cells() const { return size().cells(); }
-  bool contains(const Box& b) const {
-    return b.col >= col && b.row >= row && b.col + b.cols <= col + cols &&
-           b.row + b.rows <= row + rows;
-  }
-  bool operator==(const Box&) const = default;
-};
-
 /// Cells [begin, end) of one row.
 struct CellRun {
   int row = 0, begin = 0, end = 0;
@@ -202,8 +189,5 @@ void fill_windows(const std::vector<Hole>& holes, const std::vector<HoleWindow>&
 std::uint64_t known_checksum(const Dem& dem);
 std::uint64_t known_checksum(int row, std::span<const std::uint8_t> known,
                              std::span<const float> z);
-
-/// A part of a DEM; its spacing is `spacing`.
-Dem crop(const Dem& dem, const Box& box, Spacing spacing);
 
 }  // namespace dem

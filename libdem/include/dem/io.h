@@ -72,7 +72,7 @@ struct DemFile {
 /// Reads one band of elevations.
 /// Accepts: .hgt, .hgt.gz, .hgt.zip of any square size from 2 up, by our own reader; images (.png,
 ///          .exr, .jpg or with `heights`) by OpenImageIO; everything else that GDAL opens, its
-///          /vsizip/, /vsigzip/, /vsicurl/ paths included.
+///          /vsizip/, /vsigzip/, /vsicurl/ paths included, and a folder of tiles as one raster.
 /// Gives:   unknown cells have known = 0 and z = 0; no NaN, no infinity, no sentinel remains.
 /// Throws:  IoError, Cancelled.
 DemFile read_dem(const std::string& path, const ReadOptions& options = {}, const Run& run = {});
@@ -110,6 +110,9 @@ void write_dem(const std::string& path, const Dem& dem, const Source& source = {
 /// Throws IoError when `path` exists and overwriting was not asked for, or its folder does not
 /// exist or cannot be written: to be asked before long work.
 void check_writable(const std::string& path, bool overwrite);
+
+/// The .hgt and .tif files of a folder, by name. Throws IoError when there is none.
+std::vector<std::string> tiles_in(const std::string& folder);
 
 /// Writes text so that the path holds either what it held before or the whole new text.
 void write_text(const std::string& path, const std::string& text, bool overwrite);

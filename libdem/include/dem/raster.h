@@ -1,6 +1,7 @@
 #pragma once
 // Rasters: the values that every algorithm takes and returns. Standard library only.
 
+#include <algorithm>
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
@@ -54,6 +55,19 @@ struct Cell {
   int row = 0;
 
   bool operator==(const Cell&) const = default;
+};
+
+/// A rectangle of cells.
+struct Box {
+  int col = 0, row = 0, cols = 0, rows = 0;
+
+  Size size() const { return {cols, rows}; }
+  std::size_t cells() const { return size().cells(); }
+  bool contains(const Box& b) const {
+    return b.col >= col && b.row >= row && b.col + b.cols <= col + cols &&
+           b.row + b.rows <= row + rows;
+  }
+  bool operator==(const Box&) const = default;
 };
 
 /// A rectangle of values, row by row, row 0 in the north. It owns its cells.
@@ -113,6 +127,18 @@ inline std::size_t count(const Mask& mask) {
   std::size_t n = 0;
   for (auto m : mask.cells()) n += m != 0;
   return n;
+}
+
+/// The cells of a box, which lies within the raster.
+template <class T>
+Raster<T> crop(const Raster<T>& raster, const Box& box) {
+  auto part = Raster<T>::unset(box.size());
+  for (int row = 0; row < box.rows; ++row) {
+    const auto cells =
+        raster.row(box.row + row).subspan(std::size_t(box.col), std::size_t(box.cols));
+    std::ranges::copy(cells, part.row(row).begin());
+  }
+  return part;
 }
 
 }  // namespace dem

@@ -18,14 +18,11 @@ namespace dem {
 /// The memory in bytes that GDAL may keep for blocks of all files (it is one cache).
 void set_block_cache(std::size_t bytes);
 
-/// Whether read_dem reads a file of this name through GDAL, and a RasterReader therefore can.
-bool reads_by_parts(const std::string& path);
-
 /// One band of elevations, read part by part.
 class RasterReader {
  public:
-  /// Reads what the file says beside its heights. Accepts what read_dem reads through GDAL.
-  /// Throws IoError.
+  /// Reads what the file says beside its heights. Accepts what read_dem does; an .hgt or an image
+  /// is held in memory. Throws IoError.
   RasterReader(const std::string& path, const ReadOptions& options);
   ~RasterReader();
   RasterReader(const RasterReader&) = delete;
@@ -33,7 +30,8 @@ class RasterReader {
 
   Size size() const;
   const GeoRef& ref() const;
-  const Source& source() const;  ///< evidence and nodata are complete after scan()
+  const Source& source() const;    ///< evidence and nodata are complete after scan()
+  std::size_t held_bytes() const;  ///< memory of a file that is not read part by part
 
   /// Rows in order, each once: `begin` is called first, and again when the rows showed undeclared
   /// no-data and pass once more with it taken as unknown.
@@ -49,6 +47,7 @@ class RasterReader {
  private:
   struct File;
   std::unique_ptr<File> file_;
+  std::unique_ptr<DemFile> whole_;  ///< instead of file_
 };
 
 /// Another DEM, brought onto the cells of a raster.
@@ -70,11 +69,13 @@ class AlignedReader {
   std::unique_ptr<File> file_;
 };
 
-/// A raster file written row by row; it appears under its name, whole, with commit().
+/// A raster written row by row; it appears under its name, whole, with commit().
 class RasterWriter {
  public:
-  /// Format GTiff (tiled, compressed) or COG. The no-data value is that of the options, of the source, or a usual one.
-  /// Throws IoError.
+  /// Formats: GTiff (tiled, compressed), COG, HGT; NAME.vrt: a VRT of GeoTIFFs of 4096 x 4096 cells
+  /// in NAME_tiles/; a path that ends in "/": a folder of one-degree .hgt tiles, whose shared
+  /// edges are equal, and none for a tile without a known cell.
+  /// The no-data value is that of the options, of the source, or a usual one. Throws IoError.
   RasterWriter(const std::string& path, Size size, const GeoRef& ref, const Source& source,
                const WriteOptions& options, const Run& run);
   ~RasterWriter();
@@ -87,8 +88,11 @@ class RasterWriter {
   /// After the last row. Throws IoError.
   void commit();
 
- private:
   struct File;
+
+ private:
+  Size size_;
+  int row_ = 0;
   std::unique_ptr<File> file_;
 };
 

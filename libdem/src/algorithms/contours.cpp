@@ -85,17 +85,17 @@ class Map {
 
   /// Floods the areas.
   void find_areas() {
-    std::vector<std::pair<int, int>> todo;
+    std::vector<std::pair<int, int>> waiting;
     for (int row = 0; row < dem_.size().rows; ++row)
       for (int col = 0; col < dem_.size().cols; ++col) {
         if (dem_.known(col, row) || area_of_(col, row) >= 0) continue;
         const int id = int(areas_.size());
         Area area;
-        todo.assign(1, {col, row});
+        waiting.assign(1, {col, row});
         area_of_(col, row) = id;
-        while (!todo.empty()) {
-          const auto [x, y] = todo.back();
-          todo.pop_back();
+        while (!waiting.empty()) {
+          const auto [x, y] = waiting.back();
+          waiting.pop_back();
           ++area.cells;
           for (const Step& s : around) {
             const int nx = x + s.dx, ny = y + s.dy;
@@ -104,7 +104,7 @@ class Map {
               area.see(dem_.z(nx, ny));
             } else if (s.length == 5 && area_of_(nx, ny) < 0) {
               area_of_(nx, ny) = id;
-              todo.emplace_back(nx, ny);
+              waiting.emplace_back(nx, ny);
             }
           }
         }

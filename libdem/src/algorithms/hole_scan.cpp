@@ -315,7 +315,7 @@ std::vector<Hole> find_holes(const Dem& dem, std::vector<Spacing> spacing, const
 std::vector<std::vector<CellRun>> cells_of_holes(const Mask& known,
                                                  const std::vector<FirstCell>& holes) {
   Mask taken(known.size());
-  std::vector<CellRun> todo;
+  std::vector<CellRun> waiting;
   const auto is_open = [&](int c, int r) { return !known(c, r) && !taken(c, r); };
   // The whole run that a cell lies in.
   const auto take = [&](int col, int row) {
@@ -323,7 +323,7 @@ std::vector<std::vector<CellRun>> cells_of_holes(const Mask& known,
     while (begin > 0 && is_open(begin - 1, row)) --begin;
     while (end < known.cols() && is_open(end, row)) ++end;
     std::fill_n(taken.row(row).begin() + begin, end - begin, std::uint8_t{1});
-    todo.push_back({row, begin, end});
+    waiting.push_back({row, begin, end});
   };
   std::vector<std::vector<CellRun>> all;
   for (const auto& [col, row] : holes) {
@@ -331,9 +331,9 @@ std::vector<std::vector<CellRun>> cells_of_holes(const Mask& known,
       throw std::logic_error("a hole begins at an unknown cell of its own");
     std::vector<CellRun>& runs = all.emplace_back();
     take(col, row);
-    while (!todo.empty()) {
-      const CellRun run = todo.back();
-      todo.pop_back();
+    while (!waiting.empty()) {
+      const CellRun run = waiting.back();
+      waiting.pop_back();
       runs.push_back(run);
       for (const int r : {run.row - 1, run.row + 1}) {
         if (r < 0 || r >= known.rows()) continue;

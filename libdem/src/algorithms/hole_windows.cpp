@@ -451,21 +451,4 @@ std::uint64_t known_checksum(const Dem& dem) {
   return sum;
 }
 
-Dem crop(const Dem& dem, const Box& box, Spacing spacing) {
-  Dem part{Raster<float>(box.size()), Mask(box.size()), dem.ref, spacing};
-  auto& at = part.ref.to_world;
-  at[0] += at[1] * box.col + at[2] * box.row;
-  at[3] += at[4] * box.col + at[5] * box.row;
-  for (int row = 0; row < box.rows; ++row) {
-    const auto known =
-        dem.known.row(box.row + row).subspan(std::size_t(box.col), std::size_t(box.cols));
-    const auto z = dem.z.row(box.row + row).subspan(std::size_t(box.col), std::size_t(box.cols));
-    for (std::size_t col = 0; col < known.size(); ++col) {
-      part.known.row(row)[col] = known[col];
-      part.z.row(row)[col] = known[col] ? z[col] : 0;
-    }
-  }
-  return part;
-}
-
 }  // namespace dem

@@ -36,13 +36,6 @@ GeoRef flat(GeoRef ref) {
   return ref;
 }
 
-GeoRef moved(GeoRef ref, const Box& box) {
-  auto& at = ref.to_world;
-  at[0] += at[1] * box.col + at[2] * box.row;
-  at[3] += at[4] * box.col + at[5] * box.row;
-  return ref;
-}
-
 /// Also at the origin with cells of 1, which set_georeference takes for no place at all.
 void place(GDALDatasetH dataset, const GeoRef& ref) {
   set_georeference(dataset, ref);
@@ -58,13 +51,8 @@ struct AlignedReader::File {
   std::string path;
   GeoRef target, ref;
   Size size;
-  std::unique_ptr<RasterReader> parts;  // or the whole file:
-  Dem whole;
+  std::unique_ptr<RasterReader> reader;
   std::unique_ptr<OGRCoordinateTransformation> to_own;  // null: the same coordinates
-
-  Dem read_own(const Box& box) {
-    return parts ? parts->read(box) : crop(whole, box, whole.spacing);
-  }
 
   /// The part of the file around the cells of a box of the target; none when they do not meet.
   std::optional<Box> own_box(const Box& box) const {
@@ -100,15 +88,9 @@ AlignedReader::AlignedReader(const std::string& path, const GeoRef& target)
   File& f = *file_;
   f.path = path;
   f.target = flat(target);
-  if (reads_by_parts(path)) {
-    f.parts = std::make_unique<RasterReader>(path, ReadOptions{});
-    f.ref = f.parts->ref();
-    f.size = f.parts->size();
-  } else {
-    f.whole = read_dem(path).dem;
-    f.ref = f.whole.ref;
-    f.size = f.whole.size();
-  }
+  f.reader = std::make_unique<RasterReader>(path, ReadOptions{});
+  f.ref = f.reader->ref();
+  f.size = f.reader->size();
   f.ref = flat(f.ref);
   if (f.ref.crs_wkt.empty() != f.target.crs_wkt.empty())
     throw IoError(path, f.ref.crs_wkt.empty()
@@ -126,15 +108,15 @@ AlignedReader& AlignedReader::operator=(AlignedReader&&) noexcept = default;
 
 Dem AlignedReader::read(const Box& box) {
   File& f = *file_;
-  Dem out{Raster<float>(box.size(), nothing), Mask(box.size()), moved(f.target, box), {}};
+  Dem out{Raster<float>(box.size(), nothing), Mask(box.size()), crop(f.target, box), {}};
   if (const auto own = f.own_box(box)) {
-    Dem part = f.read_own(*own);
+    Dem part = f.reader->read(*own);
     for (std::size_t i = 0; i < part.z.cells().size(); ++i)
       if (!part.known.cells()[i]) part.z.cells()[i] = nothing;
     const GdalErrors errors;
     const DatasetPtr from = wrap_cells(part.z.cells().data(), own->cols, own->rows, GDT_Float32);
     const DatasetPtr to = wrap_cells(out.z.cells().data(), box.cols, box.rows, GDT_Float32);
-    place(from.get(), moved(f.ref, *own));
+    place(from.get(), crop(f.ref, *own));
     place(to.get(), out.ref);
     for (const auto& dataset : {from.get(), to.get()})
       GDALSetRasterNoDataValue(GDALGetRasterBand(dataset, 1), double(nothing));

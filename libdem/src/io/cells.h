@@ -51,4 +51,28 @@ bool to_cells(const std::string& path, std::span<const float> z, std::span<const
   return !collision;
 }
 
+/// Calls a function with a value of the C++ type that a cell type stands for.
+template <class Call>
+auto with_type(CellType type, const Call& call) {
+  switch (type) {
+    case CellType::int8:
+      return call(std::int8_t{});
+    case CellType::uint8:
+      return call(std::uint8_t{});
+    case CellType::int16:
+      return call(std::int16_t{});
+    case CellType::uint16:
+      return call(std::uint16_t{});
+    case CellType::int32:
+      return call(std::int32_t{});
+    case CellType::uint32:
+      return call(std::uint32_t{});
+    case CellType::float32:
+      return call(float{});
+    case CellType::float64:
+      break;
+  }
+  return call(double{});
+}
+
 }  // namespace dem

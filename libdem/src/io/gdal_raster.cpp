@@ -2,10 +2,12 @@
 
 #include <cpl_string.h>
 #include <fmt/format.h>
+#include <gdal_utils.h>
 #include <ogr_spatialref.h>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <map>
 
@@ -13,6 +15,7 @@
 #include "gdal_support.h"
 #include "nodata.h"
 #include "staged_file.h"
+#include "tile_folder.h"
 
 namespace dem {
 namespace {
@@ -272,11 +275,33 @@ void turn_north_up(DemFile& file) {
 
 }  // namespace
 
+namespace {
+
+/// The tiles of a folder as one raster.
+DatasetPtr open_folder(const std::string& path, const GdalErrors& errors) {
+  const std::vector<std::string> tiles = tiles_in(path);
+  CPLStringList names;
+  for (const std::string& tile : tiles) names.AddString(tile.c_str());
+  CPLStringList flags;
+  flags.AddString("-strict");  // a tile that cannot be read is an error
+  const std::unique_ptr<GDALBuildVRTOptions, decltype(&GDALBuildVRTOptionsFree)> options(
+      GDALBuildVRTOptionsNew(flags.List(), nullptr), GDALBuildVRTOptionsFree);
+  DatasetPtr mosaic(GDALBuildVRT("", names.size(), nullptr, names.List(), options.get(), nullptr));
+  if (!mosaic) errors.fail(path, "its tiles do not make one raster");
+  return mosaic;
+}
+
+}  // namespace
+
 OpenBand open_band(const std::string& path, const ReadOptions& options, GdalErrors& errors) {
+  register_gdal();
   OpenBand open;
-  open.dataset.reset(GDALOpenEx(path.c_str(),
-                                GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, nullptr,
-                                nullptr, nullptr));
+  if (std::filesystem::is_directory(path))
+    open.dataset = open_folder(path, errors);
+  else
+    open.dataset.reset(GDALOpenEx(path.c_str(),
+                                  GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR,
+                                  nullptr, nullptr, nullptr));
   if (!open.dataset) errors.fail(path, "cannot be opened");
   errors.clear();  // a driver that was tried in vain may have complained
   const GDALDatasetH dataset = open.dataset.get();
@@ -508,9 +533,8 @@ CPLStringList creation_options(const std::string& format, CellType type,
 GDALDriverH checked_driver(const std::string& path, const std::string& format) {
   const GDALDriverH driver = GDALGetDriverByName(format.c_str());
   if (!driver) throw IoError(path, fmt::format("there is no format \"{}\"", format));
-  if (EQUAL(format.c_str(), "VRT") || EQUAL(format.c_str(), "MEM"))
-    throw IoError(path, fmt::format("a {} holds no heights of its own; choose another format",
-                                    GDALGetDriverShortName(driver)));
+  if (EQUAL(format.c_str(), "MEM"))
+    throw IoError(path, "a MEM dataset is no file; choose another format");
   const auto can = [&](const char* what) {
     return text_or_empty(GDALGetMetadataItem(driver, what, nullptr)) == "YES";
   };
@@ -551,27 +575,8 @@ void write_typed(const std::string& path, const std::string& format, CellType ty
 void write_gdal(const std::string& path, const std::string& format, const Dem& dem,
                 const Source& source, const WriteOptions& options, const Run& run) {
   const CellType type = options.type.value_or(source.type);
-  const auto write = [&]<class T>(T) {
-    write_typed<T>(path, format, type, dem, source, options, run);
-  };
-  switch (type) {
-    case CellType::int8:
-      return write(std::int8_t{});
-    case CellType::uint8:
-      return write(std::uint8_t{});
-    case CellType::int16:
-      return write(std::int16_t{});
-    case CellType::uint16:
-      return write(std::uint16_t{});
-    case CellType::int32:
-      return write(std::int32_t{});
-    case CellType::uint32:
-      return write(std::uint32_t{});
-    case CellType::float32:
-      return write(float{});
-    case CellType::float64:
-      return write(double{});
-  }
+  with_type(type,
+            [&]<class T>(T) { write_typed<T>(path, format, type, dem, source, options, run); });
 }
 
 std::string gdal_format_of(const std::string& path) {

@@ -71,6 +71,11 @@ int choose_channel(const std::string& path, const OIIO::ImageSpec& spec, int ask
 
 }  // namespace
 
+bool is_image_name(const std::string& path) {
+  const std::string ext = extension(path);
+  return ext == ".png" || ext == ".exr" || ext == ".jpg" || ext == ".jpeg";
+}
+
 DemFile read_heightmap(const std::string& path, const ReadOptions& options, const Run& run) {
   if (options.heights) check_range(*options.heights);
   OIIO::ImageSpec config;

@@ -1,7 +1,6 @@
 #include "hgt.h"
 
 #include <cpl_string.h>
-#include <cpl_vsi.h>
 #include <fmt/format.h>
 #include <ogr_spatialref.h>
 
@@ -18,7 +17,6 @@
 #include "cells.h"
 #include "gdal_support.h"
 #include "nodata.h"
-#include "staged_file.h"
 
 namespace dem {
 namespace {
@@ -59,6 +57,11 @@ std::optional<Corner> find_corner(const std::string& name) {
       return corner;
   }
   return std::nullopt;
+}
+
+std::string tile_name(Corner corner) {
+  return fmt::format("{}{:02}{}{:03}", corner.lat < 0 ? 'S' : 'N', std::abs(corner.lat),
+                     corner.lon < 0 ? 'W' : 'E', std::abs(corner.lon));
 }
 
 std::string wgs84_wkt() {
@@ -236,8 +239,8 @@ DemFile read_hgt(const std::string& path, const ReadOptions& options, const Run&
 namespace {
 
 /// Refuses what the format cannot say.
-void check_hgt(const std::string& path, const Dem& dem, const WriteOptions& options) {
-  const auto [cols, rows] = dem.size();
+void check_hgt(const std::string& path, Size size, const GeoRef& ref, const WriteOptions& options) {
+  const auto [cols, rows] = size;
   if (cols != rows || cols < 2)
     throw IoError(path,
                   fmt::format("{} x {} cells; an .hgt is a square of at least 2 x 2", cols, rows));
@@ -248,8 +251,8 @@ void check_hgt(const std::string& path, const Dem& dem, const WriteOptions& opti
   if (!options.metadata.empty()) throw IoError(path, "an .hgt holds no metadata");
 
   // Its place is in its name alone, so the two must not contradict each other.
-  if (dem.ref == GeoRef{}) return;
-  const auto& at = dem.ref.to_world;
+  if (ref == GeoRef{}) return;
+  const auto& at = ref.to_world;
   const double step = 1.0 / (cols - 1), slack = 0.01 * step;
   const auto same = [&](double a, double b) { return std::abs(a - b) <= slack; };
   const Corner corner{int(std::lround(at[0])), int(std::lround(at[3])) - 1};
@@ -261,44 +264,58 @@ void check_hgt(const std::string& path, const Dem& dem, const WriteOptions& opti
         path, "the cells are not the nodes of a one-degree tile; an .hgt can hold nothing else");
   const auto named = find_corner(base_name(path));
   if (named && *named != corner)
-    throw IoError(path, fmt::format("the name says another tile than the cells, {}{:02}{}{:03}",
-                                    corner.lat < 0 ? 'S' : 'N', std::abs(corner.lat),
-                                    corner.lon < 0 ? 'W' : 'E', std::abs(corner.lon)));
+    throw IoError(path, "the name says another tile than the cells, " + tile_name(corner));
 }
 
 }  // namespace
 
-void write_hgt(const std::string& path, const Dem& dem, const WriteOptions& options,
-               const Run& run) {
-  check_hgt(path, dem, options);
-  StagedFile staged(path, options.overwrite);
+HgtWriter::HgtWriter(const std::string& path, Size size, const GeoRef& ref,
+                     const WriteOptions& options)
+    : path_((check_hgt(path, size, ref, options), path)), staged_(path, options.overwrite) {
   const GdalErrors errors;
-  VsiFile file(VSIFOpenL(vsi_path(staged.path(), true).c_str(), "wb"));
-  if (!file) errors.fail(path, "cannot be created");
+  file_.reset(VSIFOpenL(vsi_path(staged_.path(), true).c_str(), "wb"));
+  if (!file_) errors.fail(path, "cannot be created");
+}
 
-  const int n = dem.size().cols;
-  std::vector<std::int16_t> heights(std::size_t(n) * kRowsAtOnce);
-  std::vector<std::uint8_t> bytes;
-  bool whole = true;
-  for (int row = 0; row < n && whole; row += kRowsAtOnce) {
-    run.report(double(row) / n, "writing");
-    const std::size_t begin = std::size_t(row) * std::size_t(n);
-    const std::size_t cells = std::min(heights.size(), dem.size().cells() - begin);
-    const auto block = std::span(heights).first(cells);
-    if (!to_cells(path, dem.z.cells().subspan(begin, cells), {},
-                  dem.known.cells().subspan(begin, cells), std::int16_t(kVoid), block))
-      throw IoError(path, fmt::format("an elevation is {}, which means void in an .hgt", kVoid));
-    bytes.resize(2 * cells);
-    for (std::size_t i = 0; i < cells; ++i) {
-      const auto height = std::uint16_t(block[i]);
-      bytes[2 * i] = std::uint8_t(height >> 8);
-      bytes[2 * i + 1] = std::uint8_t(height & 0xff);
-    }
-    whole = VSIFWriteL(bytes.data(), 1, bytes.size(), file.get()) == bytes.size();
+void HgtWriter::write(std::span<const float> z, std::span<const std::uint8_t> known) {
+  std::vector<std::int16_t> heights(z.size());
+  if (!to_cells<std::int16_t>(path_, z, {}, known, kVoid, heights))
+    throw IoError(path_, fmt::format("an elevation is {}, which means void in an .hgt", kVoid));
+  std::vector<std::uint8_t> bytes(2 * z.size());
+  for (std::size_t i = 0; i < z.size(); ++i) {
+    const auto height = std::uint16_t(heights[i]);
+    bytes[2 * i] = std::uint8_t(height >> 8);
+    bytes[2 * i + 1] = std::uint8_t(height & 0xff);
   }
-  whole = VSIFCloseL(file.release()) == 0 && whole;
-  if (!whole || errors.any()) errors.fail(path, "cannot be written to the end; is the disk full?");
-  staged.commit();
+  const GdalErrors errors;
+  if (VSIFWriteL(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size() || errors.any())
+    errors.fail(path_, "cannot be written to the end; is the disk full?");
+}
+
+void HgtWriter::close() {
+  const GdalErrors errors;
+  if (VSIFCloseL(file_.release()) != 0 || errors.any())
+    errors.fail(path_, "cannot be written to the end; is the disk full?");
+}
+
+std::vector<HgtTile> hgt_tiles(const std::string& path, Size size, const GeoRef& ref) {
+  const auto& at = ref.to_world;
+  const int cells = at[1] > 0 ? int(std::min(std::lround(1 / at[1]), 46340l)) : 0;  // to a degree
+  const auto near = [&](double a, double b) { return std::abs(a - b) * cells <= 0.01; };
+  const double west = std::round(at[0]), north = std::round(at[3]);
+  const bool whole = cells >= 1 && near(at[0], west) && near(at[3], north) && at[2] == 0 &&
+                     at[4] == 0 && near(at[1] * cells, 1) && near(at[5] * cells, -1) &&
+                     size.cols > cells && size.rows > cells && (size.cols - 1) % cells == 0 &&
+                     (size.rows - 1) % cells == 0;
+  if (!whole)
+    throw IoError(path,
+                  "the cells are not the nodes of whole one-degree tiles, which .hgt files hold");
+  std::vector<HgtTile> tiles;
+  for (int row = 0; row + 1 < size.rows; row += cells)
+    for (int col = 0; col + 1 < size.cols; col += cells)
+      tiles.push_back({tile_name({int(west) + col / cells, int(north) - 1 - row / cells}) + ".hgt",
+                       {col, row, cells + 1, cells + 1}});
+  return tiles;
 }
 
 }  // namespace dem

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "dem/geodesy.h"
@@ -10,14 +11,10 @@
 #include "heightmap.h"
 #include "hgt.h"
 #include "staged_file.h"
+#include "tile_folder.h"
 
 namespace dem {
 namespace {
-
-bool is_image_name(const std::string& path) {
-  const std::string ext = extension(path);
-  return ext == ".png" || ext == ".exr" || ext == ".jpg" || ext == ".jpeg";
-}
 
 /// An empty file is told as such before any format guesses at it.
 void check_not_empty(const std::string& path) {
@@ -28,9 +25,23 @@ void check_not_empty(const std::string& path) {
     throw IoError(path, "is empty (0 bytes)");
 }
 
-}  // namespace
+/// What a RasterWriter can write and GDAL cannot by itself.
+void write_by_parts(const std::string& path, const Dem& dem, const Source& source,
+                    const WriteOptions& options, const Run& run) {
+  constexpr int rows_at_once = 256;
+  const auto [cols, rows] = dem.size();
+  RasterWriter writer(path, dem.size(), dem.ref, source, options, run);
+  for (int row = 0; row < rows; row += rows_at_once) {
+    run.report(double(row) / rows, "writing");
+    const Box box{0, row, cols, std::min(rows_at_once, rows - row)};
+    Raster<double> exact;
+    if (source.exact.size() == dem.size()) exact = crop(source.exact, box);
+    writer.write(crop(dem, box, dem.spacing), exact);
+  }
+  writer.commit();
+}
 
-bool reads_by_parts(const std::string& path) { return !is_hgt_name(path) && !is_image_name(path); }
+}  // namespace
 
 DemFile read_dem(const std::string& path, const ReadOptions& options, const Run& run) {
   const bool grey = options.heights || options.unknown_grey;
@@ -61,13 +72,22 @@ void write_dem(const std::string& path, const Dem& dem, const Source& source,
   if (image) return write_heightmap(path, dem, source, options, run);
   if (options.heights || options.unknown_grey)
     throw IoError(path, "a range of heights and a grey for unknown cells are for images only");
-  if (options.format == "HGT" || (options.format.empty() && is_hgt_name(path)))
-    return write_hgt(path, dem, options, run);
-
+  const bool hgt = options.format == "HGT" || (options.format.empty() && is_hgt_name(path));
   const std::string format = options.format.empty() ? gdal_format_of(path) : options.format;
+  if (hgt || format == "VRT" || is_tile_folder(path))
+    return write_by_parts(path, dem, source, options, run);
   if (format.empty())
     throw IoError(path, "its extension names no format that can be written; give --format");
   write_gdal(path, format, dem, source, options, run);
+}
+
+void check_writable(const std::string& path, bool overwrite) {
+  if (is_tile_folder(path)) {
+    TileFolder folder(path, overwrite);
+    return;
+  }
+  StagedFile file(path, overwrite);
+  if (extension(path) == ".vrt") TileFolder folder(tile_folder_of(path), overwrite);
 }
 
 }  // namespace dem

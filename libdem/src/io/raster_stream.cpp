@@ -4,15 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <type_traits>
 #include <vector>
 
-#include "cells.h"
 #include "gdal_raster.h"
 #include "gdal_support.h"
+#include "heightmap.h"
+#include "hgt.h"
 #include "nodata.h"
-#include "staged_file.h"
 
 namespace dem {
 namespace {
@@ -108,23 +107,34 @@ struct RasterReader::File {
   }
 };
 
-RasterReader::RasterReader(const std::string& path, const ReadOptions& options)
-    : file_(std::make_unique<File>(path, options)) {
+RasterReader::RasterReader(const std::string& path, const ReadOptions& options) {
+  if (is_hgt_name(path) || is_image_name(path) || options.heights || options.unknown_grey) {
+    whole_ = std::make_unique<DemFile>(read_dem(path, options));
+    return;
+  }
+  file_ = std::make_unique<File>(path, options);
   Source& source = file_->open.source;
   if (file_->open.in_other_units() && source.type != CellType::float64)
     source.type = CellType::float32;
 }
 RasterReader::~RasterReader() = default;
 
-Size RasterReader::size() const { return file_->open.size; }
-const GeoRef& RasterReader::ref() const { return file_->ref; }
-const Source& RasterReader::source() const { return file_->open.source; }
+Size RasterReader::size() const { return whole_ ? whole_->dem.size() : file_->open.size; }
+const GeoRef& RasterReader::ref() const { return whole_ ? whole_->dem.ref : file_->ref; }
+const Source& RasterReader::source() const { return whole_ ? whole_->source : file_->open.source; }
+std::size_t RasterReader::held_bytes() const { return whole_ ? 5 * whole_->dem.size().cells() : 0; }
 
 void RasterReader::scan(
     const std::function<void()>& begin,
     const std::function<void(int, std::span<const std::uint8_t>, std::span<const float>)>& each,
     const Run& run) {
   const auto [cols, rows] = size();
+  if (whole_) {
+    begin();
+    for (int row = 0; row < rows; ++row)
+      each(row, whole_->dem.known.row(row), whole_->dem.z.row(row));
+    return;
+  }
   for (bool again = true; again;) {
     begin();
     NodataSearch search = file_->search();
@@ -146,159 +156,12 @@ void RasterReader::scan(
 }
 
 Dem RasterReader::read(const Box& box, Raster<double>* exact) {
+  if (whole_) return crop(whole_->dem, box, {});
   Dem dem;
   NodataSearch search = file_->search();
   file_->read(box, search, dem, exact);
-  dem.ref = file_->ref;
-  auto& at = dem.ref.to_world;
-  at[0] += at[1] * box.col + at[2] * box.row;
-  at[3] += at[4] * box.col + at[5] * box.row;
+  dem.ref = crop(file_->ref, box);
   return dem;
-}
-
-// ---- Writing
-
-namespace {
-
-/// The value that will mean unknown, chosen before the cells are seen.
-template <class T>
-std::optional<T> choose_nodata(const std::string& path, const Source& source,
-                               const WriteOptions& options) {
-  const auto fits = [](double v) {
-    if constexpr (std::is_floating_point_v<T>) return true;
-    return v == std::trunc(v) && v >= double(std::numeric_limits<T>::min()) &&
-           v <= double(std::numeric_limits<T>::max());
-  };
-  if (options.nodata) {
-    if (!fits(*options.nodata))
-      throw IoError(path,
-                    fmt::format("no-data {} does not fit the type, {} to {}", *options.nodata,
-                                std::numeric_limits<T>::lowest(), std::numeric_limits<T>::max()));
-    return T(*options.nodata);
-  }
-  if (source.nodata && fits(*source.nodata)) return T(*source.nodata);
-  if constexpr (sizeof(T) == 1) return std::nullopt;
-  if (std::is_unsigned_v<T>) return std::numeric_limits<T>::max();
-  return T(std::is_same_v<T, std::int16_t> ? -32768 : -9999);
-}
-
-template <class Call>
-auto with_type(CellType type, const Call& call) {
-  switch (type) {
-    case CellType::int8:
-      return call(std::int8_t{});
-    case CellType::uint8:
-      return call(std::uint8_t{});
-    case CellType::int16:
-      return call(std::int16_t{});
-    case CellType::uint16:
-      return call(std::uint16_t{});
-    case CellType::int32:
-      return call(std::int32_t{});
-    case CellType::uint32:
-      return call(std::uint32_t{});
-    case CellType::float32:
-      return call(float{});
-    case CellType::float64:
-      break;
-  }
-  return call(double{});
-}
-
-}  // namespace
-
-struct RasterWriter::File {
-  std::string path, format;
-  Size size;
-  CellType type;
-  Run run;
-  WriteOptions options;
-  StagedFile staged;
-  std::string plain;  // what is written row by row: the file itself, or a GeoTIFF to copy from
-  DatasetPtr dataset;
-  std::optional<double> nodata;
-  int row = 0;
-
-  File(const std::string& name, std::string driver, Size raster, CellType cell_type,
-       const WriteOptions& write_options, const Run& how)
-      : path(name),
-        format(std::move(driver)),
-        size(raster),
-        type(cell_type),
-        run(how),
-        options(write_options),
-        staged(path, options.overwrite),
-        plain(format == "COG" ? staged.path() + ".plain" : staged.path()) {}
-
-  template <class T>
-  void write(const Dem& rows, const Raster<double>& exact) {
-    const GdalErrors errors;
-    std::vector<T> cells(rows.size().cells());
-    const T unknown = nodata ? T(*nodata) : T(0);
-    const bool apart = to_cells<T>(path, rows.z.cells(), exact.cells(), rows.known.cells(), unknown,
-                                   std::span<T>(cells));
-    if (nodata && !apart)
-      throw IoError(path, fmt::format("no-data {} is also an elevation; choose another with "
-                                      "--out-nodata",
-                                      *nodata));
-    if (!nodata && count(rows.known) < rows.size().cells())
-      throw IoError(path,
-                    "unknown cells remain and no value says so; choose one with --out-nodata");
-    const CPLErr error = GDALRasterIO(GDALGetRasterBand(dataset.get(), 1), GF_Write, 0, row,
-                                      size.cols, rows.size().rows, cells.data(), size.cols,
-                                      rows.size().rows, gdal_type(type), 0, 0);
-    if (error != CE_None || errors.any()) errors.fail(path, "cannot be written");
-  }
-};
-
-RasterWriter::RasterWriter(const std::string& path, Size size, const GeoRef& ref,
-                           const Source& source, const WriteOptions& options, const Run& run) {
-  const std::string format = options.format.empty() ? gdal_format_of(path) : options.format;
-  if (format != "GTiff" && format != "COG")
-    throw IoError(path, fmt::format("{} cannot be written part by part; must be GTiff or COG",
-                                    format.empty() ? "a file of this extension" : format));
-  file_ =
-      std::make_unique<File>(path, format, size, options.type.value_or(source.type), options, run);
-  File& f = *file_;
-  const GdalErrors errors;
-  const auto list = creation_options("GTiff", f.type, options, run);
-  f.dataset.reset(GDALCreate(checked_driver(path, "GTiff"), f.plain.c_str(), size.cols, size.rows,
-                             1, gdal_type(f.type), const_cast<char**>(list.List())));
-  if (!f.dataset) errors.fail(path, "cannot be written");
-  with_type(f.type, [&]<class T>(T) {
-    if (const auto nodata = choose_nodata<T>(path, source, options)) f.nodata = double(*nodata);
-  });
-  describe_dataset(f.dataset.get(), ref, f.type, f.nodata, source, options);
-}
-RasterWriter::~RasterWriter() = default;
-
-void RasterWriter::write(const Dem& rows, const Raster<double>& exact) {
-  if (rows.size().cols != file_->size.cols || file_->row + rows.size().rows > file_->size.rows)
-    throw std::logic_error("rows of another raster");
-  with_type(file_->type, [&]<class T>(T) { file_->write<T>(rows, exact); });
-  file_->row += rows.size().rows;
-}
-
-void RasterWriter::commit() {
-  File& f = *file_;
-  const GdalErrors errors;  // those of closing too: a full disk often shows only then
-  if (f.row != f.size.rows) throw std::logic_error("rows of the raster are missing");
-  if (f.format == "COG") {
-    GdalProgress progress(f.run, "writing");
-    const auto list = creation_options("COG", f.type, f.options, f.run);
-    GDALFlushCache(f.dataset.get());
-    DatasetPtr cog(GDALCreateCopy(checked_driver(f.path, "COG"), f.staged.path().c_str(),
-                                  f.dataset.get(), TRUE, const_cast<char**>(list.List()),
-                                  GdalProgress::call, &progress));
-    const bool complete = cog != nullptr;
-    cog.reset();
-    progress.rethrow();
-    if (!complete || errors.any()) errors.fail(f.path, "cannot be written");
-  }
-  f.dataset.reset();
-  if (errors.any()) errors.fail(f.path, "cannot be written");
-  if (f.plain != f.staged.path()) VSIUnlink(f.plain.c_str());
-  f.staged.commit();
 }
 
 }  // namespace dem

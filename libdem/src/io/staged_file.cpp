@@ -30,7 +30,8 @@ StagedFile::StagedFile(const std::string& path, bool overwrite)
   if (target_.filename().empty()) throw IoError(path, "is not the name of a file");
 
   const fs::file_status status = fs::status(target_, error);
-  if (fs::is_directory(status)) throw IoError(path, "is a folder");
+  if (fs::is_directory(status))
+    throw IoError(path, "is a folder; .hgt tiles go into it when it ends in /");
   if (fs::exists(status)) {
     if (!fs::is_regular_file(status)) throw IoError(path, "is not a regular file");
     if (!overwrite) throw IoError(path, "exists; give --overwrite to replace it");
@@ -86,8 +87,6 @@ void StagedFile::commit() {
     throw IoError(asked_, "cannot be put in place: " + error.code().message());
   }
 }
-
-void check_writable(const std::string& path, bool overwrite) { StagedFile(path, overwrite); }
 
 void write_text(const std::string& path, const std::string& text, bool overwrite) {
   StagedFile staged(path, overwrite);

@@ -337,7 +337,9 @@ Filled solve(const Dem& dem, const Raster<float>& noise, SplineOptions options, 
       distance = distances_to_known(dem.known);
       chosen.layout = layout_of(dem, distance);
       if (options.parameters == SplineParameters::automatic)
-        chosen = choose_springs(flat, chosen.layout, distance, X, run.part(0.05, 0.4));
+        chosen = choose_springs(flat, chosen.layout, distance, X,
+                                options.sigma != SplineSigma::none || options.realisation > 0,
+                                run.part(0.05, 0.4));
     }
   }
   if (options.parameters == SplineParameters::automatic) {
@@ -345,7 +347,7 @@ Filled solve(const Dem& dem, const Raster<float>& noise, SplineOptions options, 
     options.L3_rows = chosen.L3_rows;
     options.fourth_order = chosen.fourth_order;
     if (options.nugget == 0) options.nugget = chosen.nugget;
-    if (chosen.layout != Layout::scattered)
+    if (chosen.layout != Layout::scattered && !chosen.as_usual)
       soften_overshooting(options, dem, noise, X, x, distance, run.part(0.3, 0.3));
   }
   distance = {};

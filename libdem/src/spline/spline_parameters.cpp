@@ -37,16 +37,6 @@ struct Candidate {
   double log2_L1() const { return std::log2(L1 > 0 ? L1 : none); }
 };
 
-Dem window_of(const Dem& dem, int col, int row, Size size) {
-  Dem part{Raster<float>(size), Mask(size), {}, dem.spacing};
-  for (int y = 0; y < size.rows; ++y)
-    for (int x = 0; x < size.cols; ++x) {
-      part.z(x, y) = dem.z(col + x, row + y);
-      part.known(x, y) = dem.known(col + x, row + y);
-    }
-  return part;
-}
-
 void hide(Trial& trial, int col, int row) {
   trial.hidden.push_back({col, row, double(trial.dem.z(col, row))});
   trial.dem.known(col, row) = 0;
@@ -105,7 +95,7 @@ std::vector<Trial> scattered_trials(const Dem& dem) {
                                size.cols - window.cols);
     const int row = std::clamp(size.rows * (1 + 2 * (part / 2)) / 4 - window.rows / 2, 0,
                                size.rows - window.rows);
-    Trial trial{col, row, window_of(dem, col, row, window), {}, {}, 0};
+    Trial trial{col, row, crop(dem, {col, row, window.cols, window.rows}, dem.spacing), {}, {}, 0};
     for (int y = 0; y < window.rows; ++y)
       for (int x = 0; x < window.cols; ++x)
         if (trial.dem.known(x, y) && random_bits(seed, std::uint64_t(part), x, y) % one_in == 0)
@@ -242,7 +232,7 @@ std::vector<Trial> disk_trials(const Dem& dem, const std::vector<Disk>& disks, b
     const int col = std::max(0, disk.col - half), row = std::max(0, disk.row - half);
     const Size window{std::min(size.cols, disk.col + half + 1) - col,
                       std::min(size.rows, disk.row + half + 1) - row};
-    Trial trial{col, row, window_of(dem, col, row, window), {}, {}, 0};
+    Trial trial{col, row, crop(dem, {col, row, window.cols, window.rows}, dem.spacing), {}, {}, 0};
     for_disk(disk, size, [&](int x, int y) {
       if (dem.known(x, y)) hide(trial, x - col, y - row);
     });
@@ -308,6 +298,26 @@ ChosenSprings choose_clustered(const Dem& dem, const Raster<std::uint16_t>& dist
   chosen.L1_rows = best_springs.L1;
   chosen.L3_rows = best_springs.L3;
   chosen.fourth_order = best_springs.fourth_order;
+  return chosen;
+}
+
+/// Small windows around holes: too little ground to choose from, at more than the cost of the fill.
+/// When errors are asked for, the usual springs are tried once.
+ChosenSprings usual_beside_holes(const Dem& dem, Layout layout,
+                                 const Raster<std::uint16_t>& distance, double X,
+                                 bool errors_wanted) {
+  constexpr Candidate usual{64, 4, true};
+  ChosenSprings chosen;
+  chosen.layout = layout;
+  chosen.L1_rows = usual.L1;
+  chosen.L3_rows = usual.L3;
+  chosen.fourth_order = usual.fourth_order;
+  chosen.as_usual = true;
+  if (!errors_wanted) return chosen;
+  std::vector<Trial> trials = disk_trials(dem, disks_beside_gaps(dem, distance, true), true);
+  if (trials.size() < 4) return chosen;
+  try_springs(trials, usual, X);
+  chosen.held_out = held_out(trials);
   return chosen;
 }
 
@@ -444,7 +454,11 @@ Layout layout_of(const Dem& dem, const Raster<std::uint16_t>& distance) {
 }
 
 ChosenSprings choose_springs(const Dem& dem, Layout layout, const Raster<std::uint16_t>& distance,
-                             double X, const Run& run) {
+                             double X, bool errors_wanted, const Run& run) {
+  constexpr std::size_t cells_to_choose_from = 1 << 18;
+  const std::size_t cells = dem.size().cells();
+  if (cells < cells_to_choose_from && 5 * count(dem.known) >= 3 * cells)
+    return usual_beside_holes(dem, layout, distance, X, errors_wanted);
   switch (layout) {
     case Layout::scattered:
       return choose_scattered(dem, X, run);
@@ -454,7 +468,7 @@ ChosenSprings choose_springs(const Dem& dem, Layout layout, const Raster<std::ui
       // A line is only as exact as the cells it runs through: it pulls as hard as the springs do at
       // a wavelength of 3.5 cells.
       const double K = std::pow(2 * std::numbers::pi / 3.5, 2);
-      return {64, 0, true, 1 / (K * K), Layout::contours, 0, 0, {}, contour_step(dem)};
+      return {64, 0, true, 1 / (K * K), Layout::contours, 0, 0, {}, contour_step(dem), false};
     }
   }
   return {};

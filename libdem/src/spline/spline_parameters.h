@@ -26,6 +26,7 @@ struct ChosenSprings {
   int hidden_cells = 0;
   std::vector<HeldOut> held_out;  ///< the same, one by one
   double contour_step_m = 0;      ///< between contour lines
+  bool as_usual = false;          ///< nothing was tried: a small window around holes
 };
 
 /// Distances (chamfer 5-7-11, in fifths of a cell, at most 65535) of all cells to the nearest known.
@@ -40,8 +41,9 @@ Layout layout_of(const Dem& dem, const Raster<std::uint16_t>& distance);
 /// Method: scattered: a tenth (sparse ones: a fifth) of the known cells hidden in one window of each
 ///         quadrant. Clustered: disks as wide as the gaps, cut beside them, each in a window of its
 ///         own; the mean of the logarithms of their errors. Both with a small charge for leaving the
-///         usual springs.
+///         usual springs. Fewer than 2^18 cells of which three fifths are known, as around a hole,
+///         take the usual springs; their hidden cells are looked at when `errors_wanted`.
 ChosenSprings choose_springs(const Dem& dem, Layout layout, const Raster<std::uint16_t>& distance,
-                             double X, const Run& run);
+                             double X, bool errors_wanted, const Run& run);
 
 }  // namespace dem

@@ -23,4 +23,20 @@ void check_fillable(const Dem& dem) {
     throw std::invalid_argument("dem has no known cell; at least one is needed");
 }
 
+GeoRef crop(GeoRef ref, const Box& box) {
+  auto& at = ref.to_world;
+  at[0] += at[1] * box.col + at[2] * box.row;
+  at[3] += at[4] * box.col + at[5] * box.row;
+  return ref;
+}
+
+Dem crop(const Dem& dem, const Box& box, Spacing spacing) {
+  Dem part{crop(dem.z, box), crop(dem.known, box), crop(dem.ref, box), spacing};
+  const auto known = part.known.cells();
+  const auto z = part.z.cells();
+  for (std::size_t i = 0; i < z.size(); ++i)
+    if (!known[i]) z[i] = 0;
+  return part;
+}
+
 }  // namespace dem
