@@ -138,8 +138,7 @@ Json calibration_section(const Compared& c, const Raster<float>& error) {
   for (int i = 0; i <= 20; ++i) parts.push_back(i / 20.0);
   std::vector<double> bounds = quantiles(c.sigma, told, parts);
   bounds.back() = std::nextafter(bounds.back() * (1 + 1e-6), INFINITY);
-  const auto repeated = std::ranges::unique(bounds);
-  bounds.erase(repeated.begin(), repeated.end());
+  bounds.erase(std::unique(bounds.begin(), bounds.end()), bounds.end());
 
   Series found{"found", {}, {}}, right{"as foretold", {}, {}};
   right.marks = false, right.dashed = true;
