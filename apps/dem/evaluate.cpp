@@ -139,8 +139,7 @@ Scores score(const Options& o, Stopwatch& watch, const Run& run) {
     scores.sections = error_sections(
         {truth_z, got_z, comparable, where, scores.filled ? *scores.filled : scores.all, known,
          sigma, spacing, truth.dem.spacing},
-        run.part(0.85, 1));
-    if (whole) scores.sections.push_back(spectrum_section(scores.truth, scores.got));
+        scores.truth, scores.got, run.part(0.85, 1));
     watch.lap("drawing");
   }
   return scores;
@@ -189,7 +188,7 @@ std::string spectrum_table(const Scores& s) {
   return text;
 }
 
-void write_page(const Options& o, Scores s, const Stopwatch& watch, const Shell& shell) {
+void write_page(const Options& o, Scores s, const Stopwatch& watch, Shell& shell) {
   const Errors& judged = s.filled ? *s.filled : s.all;
   const char* cells = s.filled ? "filled" : "compared";
   ReportPage page;
@@ -201,7 +200,8 @@ void write_page(const Options& o, Scores s, const Stopwatch& watch, const Shell&
     page.lead += fmt::format(" {} cells of TRUTH are unknown in GOT.", grouped(s.unfilled));
   Json rows = Json::array();
   for (const auto& m : kMeasures) {
-    page.figures.emplace_back(m.title, fmt::format("{:.2f} {}", judged.*m.value, m.unit));
+    if (std::isfinite(judged.*m.value))
+      page.figures.emplace_back(m.title, fmt::format("{:.2f} {}", judged.*m.value, m.unit));
     Json row{fmt::format("{}, {}", m.title, m.unit), decimal(s.all.*m.value, 3)};
     if (s.filled) row.push_back(decimal((*s.filled).*m.value, 3));
     rows.push_back(std::move(row));

@@ -102,6 +102,11 @@ class WhatItHolds(ReportTest):
         self.write("one.asc", asc_text([[5]]))
         self.succeeds("fill", "one.asc", "one.tif", "--report", "one.html")
         self.succeeds("evaluate", "one.asc", "one.tif", "--report", "same.html")
+        titles = [section["title"] for section in self.data("same.html")["sections"]]
+        self.assertEqual(titles, ["Truth and reconstruction", "Error", "Errors"])  # no slope, no wave
+        self.write("flat.asc", asc_text([[5] * 20] * 20))
+        self.succeeds("evaluate", "flat.asc", "flat.asc", "--report", "flat.html")
+        self.assertNotIn("Power spectrum", [section["title"] for section in self.data("flat.html")["sections"]])
 
 
 class Refusals(ReportTest):

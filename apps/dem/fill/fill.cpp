@@ -195,7 +195,7 @@ void write_table(const Options& o, const FillOutcome& out, bool overwrite) {
 /// Whatever the raster: its sections were made before the output was written, so that a stop while
 /// they are made leaves the output as it was.
 void write_page(const Options& o, const ChosenMethod& chosen, const FillOutcome& out, Json sections,
-                const Stopwatch& watch, const Shell& shell) {
+                const Stopwatch& watch, Shell& shell) {
   if (o.report.empty()) return;
   ReportPage page = fill_page(o.in, chosen, out);
   page.sections = std::move(sections);

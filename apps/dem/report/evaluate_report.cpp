@@ -108,6 +108,7 @@ Json by_slope(const Compared& c, const Raster<float>& error, const Run& run) {
       if (row == 0 || col == 0 || row == inner.rows() - 1 || col == inner.cols() - 1)
         inner(col, row) = 0;
   Bars bars = bars_of(errors_by(error, inner, slope_deg(c.truth, c.spacing, run), bounds), 0);
+  if (bars.classes.empty()) return {};
   bars.title = "Error by slope";
   bars.note = "Bias is the mean error. Below: how many cells each class has.";
   bars.x_label = "slope of TRUTH, degrees";
@@ -147,10 +148,9 @@ Json calibration_section(const Compared& c, const Raster<float>& error) {
     found.x.push_back(k.by_rms);
     found.y.push_back(k.rmse_m);
   }
-  if (!found.x.empty()) {
-    const auto [low, high] = std::ranges::minmax(found.x);
-    right.x = right.y = {low, high};
-  }
+  if (found.x.empty()) return {};
+  const auto [low, high] = std::ranges::minmax(found.x);
+  right.x = right.y = {low, high};
   const Calibration all = calibration(c.truth, c.got, c.judged, c.sigma);
   return lines_section(
       {"Calibration of sigma",
@@ -185,30 +185,24 @@ Calibration calibration(const Raster<float>& truth, const Raster<float>& got, co
   return all;
 }
 
-Json error_sections(const Compared& c, const Run& run) {
+Json error_sections(const Compared& c, const std::vector<SpectrumBin>& truth,
+                    const std::vector<SpectrumBin>& got, const Run& run) {
   const Raster<float> error = difference(c.got, c.truth);
   Json sections = Json::array();
+  const auto add = [&](Json section) {
+    if (!section.is_null()) sections.push_back(std::move(section));
+  };
   run.report(0, "report");
   add_pictures(sections, c, error);
   run.report(0.4, "report");
-  sections.push_back(histogram_of(c, error));
-  sections.push_back(by_slope(c, error, run.part(0.5, 0.7)));
-  if (!c.known.empty()) sections.push_back(by_distance(c, error));
+  add(histogram_of(c, error));
+  add(by_slope(c, error, run.part(0.5, 0.7)));
+  if (!c.known.empty()) add(by_distance(c, error));
   run.report(0.9, "report");
-  if (!c.sigma.empty()) sections.push_back(calibration_section(c, error));
+  if (!c.sigma.empty()) add(calibration_section(c, error));
+  add(spectrum_section({{"TRUTH", truth}, {"GOT", got}},
+                       "Where GOT lies below TRUTH it is too smooth, above it too rough."));
   return sections;
-}
-
-Json spectrum_section(const std::vector<SpectrumBin>& truth, const std::vector<SpectrumBin>& got) {
-  Series t{"TRUTH", {}, {}}, g{"GOT", {}, {}};
-  for (std::size_t i = 0; i < truth.size(); ++i) {
-    if (truth[i].power_m2 > 0)
-      t.x.push_back(truth[i].wavelength_m), t.y.push_back(truth[i].power_m2);
-    if (got[i].power_m2 > 0) g.x.push_back(got[i].wavelength_m), g.y.push_back(got[i].power_m2);
-  }
-  Axis wavelength{"wavelength, m", true, true, {}};
-  return lines_section({"Power spectrum", wavelength, {"power density, m⁴", true}, {t, g}},
-                       "Long waves at the left. Where GOT lies below TRUTH it is too smooth.");
 }
 
 }  // namespace dem::app

@@ -32,10 +32,8 @@ struct Calibration {
 Calibration calibration(const Raster<float>& truth, const Raster<float>& got, const Mask& judged,
                         const Raster<float>& sigma);
 
-/// Pictures and charts of the errors.
-Json error_sections(const Compared& c, const Run& run);
-
-/// The spectra of both.
-Json spectrum_section(const std::vector<SpectrumBin>& truth, const std::vector<SpectrumBin>& got);
+/// Pictures and charts of the errors, and the spectra of both (which may be empty).
+Json error_sections(const Compared& c, const std::vector<SpectrumBin>& truth,
+                    const std::vector<SpectrumBin>& got, const Run& run);
 
 }  // namespace dem::app

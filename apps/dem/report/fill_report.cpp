@@ -43,7 +43,7 @@ struct View {
   Spacing pixel;
   int k = 1;  // cells on the side of a pixel
   Means z, sigma;
-  std::array<Means, 5> origins;               // how much of each pixel
+  std::array<Shares, 5> origins;              // how much of each pixel
   std::vector<std::size_t> cells_by_sigma{};  // of kSigmaBounds
   Raster<float> surface{};                    // heights without gaps
 
@@ -70,7 +70,7 @@ View view_of(const Box& box, Spacing cell, int side, const FilledRaster& raster,
   view.k = cells_per_pixel(box.size(), side);
   view.pixel = {cell.dx_m * view.k, cell.dy_m * view.k};
   view.z = view.sigma = Means(box.size(), view.k);
-  view.origins.fill(view.z);
+  view.origins.fill(Shares(box.size(), view.k));
   view.cells_by_sigma.resize(kSigmaBounds.size() - 1);
   const int strip = std::max(1, (1 << 20) / box.cols);
   for (int row = 0; row < box.rows; row += strip) {
@@ -78,12 +78,8 @@ View view_of(const Box& box, Spacing cell, int side, const FilledRaster& raster,
     const FilledPart part =
         raster.read({box.col, box.row + row, box.cols, std::min(strip, box.rows - row)});
     view.z.add(row, part.dem.z, part.dem.known);
-    for (std::size_t o = 0; o < view.origins.size(); ++o) {
-      Mask is(part.origin.size());
-      std::ranges::transform(part.origin.cells(), is.cells().begin(),
-                             [o](std::uint8_t origin) { return std::uint8_t(origin == o); });
-      view.origins[o].add(row, part.dem.z, is);
-    }
+    for (std::size_t o = 0; o < view.origins.size(); ++o)
+      view.origins[o].add(row, part.origin, std::uint8_t(o));
     if (!part.sigma.empty()) add_sigma(view, part, row);
   }
   view.surface = view.z.surface();
@@ -214,9 +210,10 @@ Json hole_section(const FillOutcome& out, const std::string& method, const Fille
   const bool rim = std::ranges::any_of(
       out.outcomes, [](const HoleOutcome& hole) { return std::isfinite(hole.rim_error_m); });
   const bool geographic = is_geographic(raster.ref);
-  std::vector<std::string> columns{"before, after",    "cells",
-                                   "area, km²",        "farthest from data, m",
-                                   "relief of rim, m", "filled by"};
+  const bool vast = shown > 0 && out.holes[order[0]].area_m2 > 1e5;
+  std::vector<std::string> columns{
+      "before, after",    "cells",    vast ? "area, km²" : "area, m²", "farthest from data, m",
+      "relief of rim, m", "filled by"};
   if (rim) columns.push_back("error of hidden rim cells, m");
   columns.insert(columns.end(), {"time of its window, s",
                                  geographic ? "longitude, latitude" : "x, y", "column, row"});
@@ -235,11 +232,11 @@ Json hole_section(const FillOutcome& out, const std::string& method, const Fille
     const double row = hole.box.row + (hole.box.rows - 1) / 2.0;
     Json line{picture_cell({pictures.before, pictures.after}, view.pixel),
               grouped(hole.cells),
-              fmt::format("{:.3g}", hole.area_m2 / 1e6),
-              decimal(hole.distance_m, 0),
-              hole.has_rim ? decimal(hole.rim_relief_m(), 0) : "",
+              three_digits(hole.area_m2 / (vast ? 1e6 : 1)),
+              three_digits(hole.distance_m),
+              hole.has_rim ? three_digits(hole.rim_relief_m()) : "",
               filled_by(outcome, out, method)};
-    if (rim) line.push_back(decimal(double(outcome.rim_error_m), 1));
+    if (rim) line.push_back(three_digits(double(outcome.rim_error_m)));
     line.push_back(outcome.verdict == Verdict::fill ? decimal(outcome.seconds, 3) : "");
     line.push_back(fmt::format("{:.{}f}, {:.{}f}", w[0] + w[1] * col + w[2] * row,
                                geographic ? 4 : 0, w[3] + w[4] * col + w[5] * row,
@@ -284,15 +281,12 @@ Json size_section(const FillOutcome& out) {
   return bars_section(bars);
 }
 
-Json spectrum_section(const Dem& filled) {
-  Series power{"filled", {}, {}};
-  for (const auto& bin : power_spectrum(filled.z, filled.spacing))
-    if (bin.power_m2 > 0) power.x.push_back(bin.wavelength_m), power.y.push_back(bin.power_m2);
-  return lines_section(
-      {"Power spectrum", {"wavelength, m", true, true, {}}, {"power density, m⁴", true}, {power}},
-      "Of the whole filled surface, long waves at the left. Where it falls more steeply than at "
-      "the "
-      "left, the surface is smooth.");
+Json spectrum_of(const Dem& filled) {
+  const Size size = filled.size();
+  if (count(filled.known) < size.cells() || size.cols < 16 || size.rows < 16) return {};
+  return spectrum_section({{"filled", power_spectrum(filled.z, filled.spacing)}},
+                          "Of the whole filled surface. Where it falls more steeply than at the "
+                          "left, the surface is smooth.");
 }
 
 }  // namespace
@@ -330,9 +324,9 @@ Json fill_sections(const FillOutcome& out, const std::string& method, const Fill
   // Charts.
   if (sigma) sections.push_back(sigma_bars(view.cells_by_sigma));
   if (out.holes.size() > 1) sections.push_back(size_section(out));
-  if (raster.whole && count(raster.whole->known) == size.cells() && size.cols >= 16 &&
-      size.rows >= 16)
-    sections.push_back(spectrum_section(*raster.whole));
+  if (raster.whole)
+    if (Json spectrum = spectrum_of(*raster.whole); !spectrum.is_null())
+      sections.push_back(std::move(spectrum));
 
   if (!out.holes.empty())
     sections.push_back(hole_section(out, method, raster, spacing, run.part(0.6, 1)));

@@ -58,7 +58,7 @@ void Stopwatch::lap(std::string step) {
 }
 
 void write_report(const std::string& path, const ReportPage& page, const Stopwatch& watch,
-                  const Shell& shell) {
+                  Shell& shell) {
   Texts timings;
   double total = 0;
   for (const auto& [step, s] : watch.laps()) {
@@ -84,6 +84,7 @@ void write_report(const std::string& path, const ReportPage& page, const Stopwat
   std::string html(report_page);
   html.replace(html.find(mark), mark.size(), text);
   write_text(path, html, shell.overwrite);
+  shell.say("wrote {}", path);
 }
 
 Json lines_section(const Panel& panel, std::string note) {
@@ -93,6 +94,21 @@ Json lines_section(const Panel& panel, std::string note) {
   json["series"] = Json::array();
   for (const auto& s : panel.series) json["series"].push_back(line(s));
   return json;
+}
+
+Json spectrum_section(const std::vector<std::pair<std::string, std::vector<SpectrumBin>>>& spectra,
+                      std::string note) {
+  Panel panel{"Power spectrum",
+              {"wavelength, m (long waves at the left)", true, true, {}},
+              {"power density, m⁴", true},
+              {}};
+  for (const auto& [name, bins] : spectra) {
+    Series series{name, {}, {}};
+    for (const auto& bin : bins)
+      if (bin.power_m2 > 0) series.x.push_back(bin.wavelength_m), series.y.push_back(bin.power_m2);
+    if (!series.x.empty()) panel.series.push_back(std::move(series));
+  }
+  return panel.series.empty() ? Json() : lines_section(panel, std::move(note));
 }
 
 Json histogram_section(std::string title, std::string note, std::string x_label, double low,
@@ -128,6 +144,12 @@ Json table_section(std::string title, std::string note, std::vector<std::string>
   json["columns"] = std::move(columns);
   json["rows"] = std::move(rows);
   return json;
+}
+
+std::string three_digits(double value) {
+  if (value >= 1000) return grouped(std::size_t(std::llround(value)));
+  const int digits = value >= 100 ? 0 : value >= 10 ? 1 : value >= 1 ? 2 : 3;
+  return decimal(value, digits);
 }
 
 std::string decimal(double value, int digits) {

@@ -9,6 +9,7 @@
 
 #include "common.h"
 #include "curve/chart.h"
+#include "dem/evaluate.h"
 
 namespace dem::app {
 
@@ -44,12 +45,16 @@ struct ReportPage {
 
 /// Writes the page whole or not at all. Throws IoError.
 void write_report(const std::string& path, const ReportPage& page, const Stopwatch& watch,
-                  const Shell& shell);
+                  Shell& shell);
 
 // ---- Sections. `note` says in a sentence or two how to read them.
 
 /// Lines over a numeric axis.
 Json lines_section(const Panel& panel, std::string note);
+
+/// Power spectra by name; null when none of them has any power.
+Json spectrum_section(const std::vector<std::pair<std::string, std::vector<SpectrumBin>>>& spectra,
+                      std::string note);
 
 /// Counts of equal classes as an area under steps, beside curves over the same axis.
 Json histogram_section(std::string title, std::string note, std::string x_label, double low,
@@ -72,5 +77,8 @@ Json table_section(std::string title, std::string note, std::vector<std::string>
 
 /// A number for a table: `digits` after the point, "" when it is not known.
 std::string decimal(double value, int digits);
+
+/// A number that is not negative, to three digits or whole: "0.123", "12.3", "1 235".
+std::string three_digits(double value);
 
 }  // namespace dem::app

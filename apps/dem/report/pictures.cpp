@@ -34,11 +34,12 @@ std::string base64(std::string_view bytes) {
 
 std::string css(Rgb c) { return fmt::format("#{:02x}{:02x}{:02x}", c[0], c[1], c[2]); }
 
-/// Shaded ground as JPEG, which takes a third of PNG's bytes; flat colours as PNG.
-Json image(const Picture& picture, std::string_view format) {
+/// Shaded ground as JPEG, which takes a third of PNG's bytes; small pictures and flat colours as PNG.
+Json image(const Picture& picture, bool shaded) {
+  const bool large = picture.pixels.size().cells() > 256 * 256;
   return {{"label", picture.label},
           {"alt", picture.alt},
-          {"src", data_uri(picture.pixels, format)},
+          {"src", data_uri(picture.pixels, shaded && large ? "jpg" : "png")},
           {"width", picture.pixels.cols()},
           {"height", picture.pixels.rows()}};
 }
@@ -53,7 +54,7 @@ Json map(std::string title, std::string note, const Picture& picture, Spacing pi
           {"title", std::move(title)},
           {"note", std::move(note)},
           {"aspect", aspect(picture.pixels.size(), pixel)},
-          {"picture", image(picture, "png")}};
+          {"picture", image(picture, false)}};
 }
 
 }  // namespace
@@ -62,24 +63,34 @@ int cells_per_pixel(Size size, int side) {
   return std::max(1, (std::max(size.cols, size.rows) + side - 1) / side);
 }
 
-Means::Means(Size size, int k)
-    : full_(size),
-      k_(k),
-      sum_({(size.cols + k - 1) / k, (size.rows + k - 1) / k}),
-      count_(sum_.size()) {}
+Shares::Shares(Size size, int k)
+    : full_(size), k_(k), count_({(size.cols + k - 1) / k, (size.rows + k - 1) / k}) {}
 
-void Means::add(int first_row, const Raster<float>& values, const Mask& where) {
-  for (int row = 0; row < values.rows(); ++row)
-    for (int col = 0; col < values.cols(); ++col) {
-      if (!where(col, row)) continue;
-      sum_(col / k_, (first_row + row) / k_) += double(values(col, row));
-      ++count_(col / k_, (first_row + row) / k_);
+void Shares::add(int first_row, const Raster<std::uint8_t>& kinds, std::uint8_t kind) {
+  for (int row = 0; row < kinds.rows(); ++row) {
+    const auto cells = kinds.row(row);
+    for (int begin = 0; begin < kinds.cols(); begin += k_) {
+      const auto square =
+          cells.subspan(std::size_t(begin), std::size_t(std::min(k_, kinds.cols() - begin)));
+      count_(begin / k_, (first_row + row) / k_) += float(std::ranges::count(square, kind));
     }
+  }
 }
 
-double Means::share(int col, int row) const {
+double Shares::share(int col, int row) const {
   const int cols = std::min(k_, full_.cols - col * k_), rows = std::min(k_, full_.rows - row * k_);
   return double(count_(col, row)) / double(cols * rows);
+}
+
+void Means::add(int first_row, const Raster<float>& values, const Mask& where) {
+  where_.add(first_row, where, 1);
+  for (int row = 0; row < values.rows(); ++row)
+    for (int begin = 0; begin < values.cols(); begin += k_) {
+      double sum = 0;
+      for (int col = begin; col < std::min(begin + k_, values.cols()); ++col)
+        if (where(col, row)) sum += double(values(col, row));
+      sum_(begin / k_, (first_row + row) / k_) += sum;
+    }
 }
 
 Raster<float> Means::surface() const {
@@ -146,8 +157,8 @@ Json swipe_section(std::string title, std::string note, const Picture& before, c
           {"title", std::move(title)},
           {"note", std::move(note)},
           {"aspect", aspect(before.pixels.size(), pixel)},
-          {"before", image(before, "jpg")},
-          {"after", image(after, "jpg")}};
+          {"before", image(before, true)},
+          {"after", image(after, true)}};
 }
 
 Json map_section(std::string title, std::string note, const Picture& picture, Spacing pixel,
@@ -170,7 +181,7 @@ Json map_section(std::string title, std::string note, const Picture& picture, Sp
 Json picture_cell(const std::vector<Picture>& pictures, Spacing pixel) {
   Json cell{{"pictures", Json::array()}};
   for (const auto& p : pictures) {
-    Json json = image(p, "jpg");
+    Json json = image(p, true);
     json["aspect"] = aspect(p.pixels.size(), pixel);
     cell["pictures"].push_back(std::move(json));
   }

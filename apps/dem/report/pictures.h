@@ -17,29 +17,47 @@ inline constexpr int kPictureSide = 1300;
 /// Cells on the side of a pixel, so that a picture of `size` has at most `side` pixels on a side.
 int cells_per_pixel(Size size, int side);
 
-/// Means over squares of k x k cells, from rows that pass in order.
+/// How much of each square of k x k cells is of one kind, from rows that pass in order.
+class Shares {
+ public:
+  Shares() = default;
+  Shares(Size size, int k);
+
+  /// Rows from `first_row` on; cells of this kind count.
+  void add(int first_row, const Raster<std::uint8_t>& kinds, std::uint8_t kind);
+
+  Size size() const { return count_.size(); }
+  bool any(int col, int row) const { return count_(col, row) > 0; }
+  float count(int col, int row) const { return count_(col, row); }
+  double share(int col, int row) const;
+
+ private:
+  Size full_;
+  int k_ = 1;
+  Raster<float> count_;
+};
+
+/// Means over squares of k x k cells.
 class Means {
  public:
   Means() = default;
-  Means(Size size, int k);
+  Means(Size size, int k) : k_(k), where_(size, k), sum_(where_.size()) {}
 
-  /// Rows from `first_row` on; only cells where `where` is 1 count.
+  /// Rows from `first_row` on; cells where `where` is 1 count.
   void add(int first_row, const Raster<float>& values, const Mask& where);
 
-  Size size() const { return sum_.size(); }
-  bool any(int col, int row) const { return count_(col, row) > 0; }
-  float mean(int col, int row) const { return float(sum_(col, row) / count_(col, row)); }
-  /// The part of a square's cells that counted.
-  double share(int col, int row) const;
+  Size size() const { return where_.size(); }
+  bool any(int col, int row) const { return where_.any(col, row); }
+  double share(int col, int row) const { return where_.share(col, row); }
+  float mean(int col, int row) const { return float(sum_(col, row) / where_.count(col, row)); }
 
   /// The means; squares without any get heights from those around them.
   Raster<float> surface() const;
 
  private:
-  Size full_;
   int k_ = 1;
+  Shares where_;
   Raster<double> sum_;
-  Raster<float> count_;
 };
 
 /// The light of a report's pictures: heights are exaggerated where the land is flat.

@@ -118,6 +118,7 @@ function named_on_log({ min, max }, value) {
   return (decades > 2.5 ? [1] : decades > 1.3 ? [1, 3] : [1, 2, 3, 5, 7]).includes(digit);
 }
 
+/// `spec`: label, log, reversed, ticks, and the values of a logarithmic axis.
 function axis(spec, extra = {}) {
   const scale = { type: spec.log ? "logarithmic" : "linear", reverse: Boolean(spec.reversed),
                   title: { display: true, text: spec.label, color: MUTED }, grid: { color: GRID, borderColor: MUTED },
@@ -127,6 +128,9 @@ function axis(spec, extra = {}) {
     scale.min = Math.min(...spec.ticks);
     scale.max = Math.max(...spec.ticks);
   } else if (spec.log) {
+    // No further than the data: by itself the axis would begin and end at powers of ten.
+    scale.min = Math.min(...spec.values) / 1.2;
+    scale.max = Math.max(...spec.values) * 1.2;
     scale.ticks.callback = function (value) { return number(value, this.max >= 1e7 ? 1000 : 1e7); };
     scale.afterBuildTicks = built => { built.ticks = built.ticks.filter(tick => named_on_log(built, tick.value)); };
   }
@@ -176,6 +180,8 @@ const tooltip = (x, y) => ({ callbacks: {
 
 function lines(section) {
   const { x, y, series, title, note } = section;
+  x.values = series.flatMap(s => s.x);
+  y.values = series.flatMap(s => s.y);
   const rows = series.flatMap(s => s.x.map((value, i) => [s.name, number(value), number(s.y[i])]));
   return [chart({ type: "line", data: { datasets: series.map((s, i) => line_dataset(s, i)) },
                   options: { scales: { x: axis(x), y: upright(y) },
@@ -203,13 +209,13 @@ function bars(section) {
   const label = item => `${item.dataset.label}: ${number(item.parsed.y)}`;
   const plugins = { tooltip: { callbacks: { label } } };
   const datasets = series.map((s, i) => ({ label: s.name, data: s.values, backgroundColor: COLOURS[i],
-                                           categoryPercentage: 0.75, pointStyle: "rect" }));
+                                           categoryPercentage: 0.75, maxBarThickness: 72, pointStyle: "rect" }));
   const parts = [];
   if (series.length)
     parts.push(chart({ type: "bar", data: { labels: classes, datasets },
                        options: { scales: { x: category(x.label, classes), y: upright(y) }, plugins } },
                      `${title}. ${note}`, 270));
-  const below = { label: counts_label, data: counts, backgroundColor: "#9aa3ab", categoryPercentage: 0.75 };
+  const below = { label: counts_label, data: counts, backgroundColor: "#9aa3ab", categoryPercentage: 0.75, maxBarThickness: 72 };
   const count_axis = upright({ label: counts_label }, { beginAtZero: true, maxTicks: series.length ? 3 : 8 });
   parts.push(chart({ type: "bar", data: { labels: classes, datasets: [below] },
                      options: { scales: { x: category(series.length ? "" : x.label, classes), y: count_axis }, plugins } },
@@ -228,10 +234,11 @@ function values(columns, rows) {
 
 const KINDS = { swipe, map, lines, histogram, bars, table: section => [table(section.columns, section.rows)] };
 
-/// Pictures stand beside pictures and charts beside charts; one that is left over is wide.
+/// Pictures stand beside pictures, charts and narrow tables beside each other; wide tables, and what
+/// is left over, take the whole width.
 function mark_wide(sections) {
   const kind = section => !section ? "" : ["swipe", "map"].includes(section.kind) ? "picture"
-                        : section.kind === "table" ? "table" : "chart";
+                        : section.columns?.length > 5 ? "table" : "chart";
   let before = 0;  // of the same kind, in this row of cards
   sections.forEach((section, i) => {
     before = kind(section) === kind(sections[i - 1]) ? before + 1 : 0;
