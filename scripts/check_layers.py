@@ -12,8 +12,8 @@ import tempfile
 # The layer of each file. A header dem/NAME.h and its source NAME.cpp share a name and a layer.
 LAYERS = {
     "values": ["canvas", "dem", "fields", "palette", "raster", "river", "run"],
-    "helpers": ["cubic", "flood", "gradient", "parallel", "paths", "random", "vectorised"],  # private: for any algorithm
-    "algorithms": ["baseline", "contours", "deterrace", "draw", "erosion", "evaluate", "faults", "holes", "mcmd", "networks",
+    "helpers": ["cubic", "envelope", "flood", "gradient", "parallel", "paths", "random", "vectorised"],  # private: for any algorithm
+    "algorithms": ["baseline", "breakdown", "contours", "deterrace", "draw", "erosion", "evaluate", "faults", "holes", "mcmd", "networks",
                    "noise", "outliers", "points", "raytrace", "riverland", "sample", "sketch", "spline"],
     "methods": ["find_row", "generators", "greedy", "gridding", "methods", "supersample"],
     "io": ["aligned_reader", "baselines", "cells", "crs", "drawing", "gdal_raster", "gdal_support", "geodesy", "heightmap",

@@ -8,13 +8,13 @@ set -euo pipefail
 packages=(
   g++ cmake ninja-build pkg-config
   libgdal-dev libgeographiclib-dev libopenimageio-dev libtbb-dev libeigen3-dev libfmt-dev
-  libcli11-dev nlohmann-json3-dev
+  libcli11-dev nlohmann-json3-dev libjs-chart.js
   ca-certificates
 )
 test_packages=(
   libgtest-dev libgmock-dev libbenchmark-dev libembree-dev
   clang-14 clang-format-14 libclang-rt-14-dev
-  python3
+  python3 chromium
 )
 
 case "${1:-}" in

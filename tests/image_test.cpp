@@ -5,6 +5,9 @@
 #include <stdlib.h>
 
 #include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
 
 #include "dem/io.h"
 
@@ -42,6 +45,26 @@ TEST_F(Image, ColourPicturesKeepTheirChannels) {
   write_image(at("a.png"), picture);
   for (int band = 1; band <= 3; ++band)
     EXPECT_EQ(read_dem(at("a.png"), {.band = band}).dem.z(1, 0), float(10 * band));
+}
+
+TEST_F(Image, EncodedPicturesAreThoseOfFiles) {
+  Raster<Rgb> picture({9, 4});
+  picture(3, 2) = {10, 200, 30};
+  Raster<std::uint8_t> grey({9, 4});
+  grey(3, 2) = 99;
+  const auto file = [&](const std::string& name) {
+    std::ifstream in(at(name), std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(in), {});
+  };
+  for (const char* format : {"png", "jpg"}) {
+    const std::string name = std::string("a.") + format;
+    write_image(at(name), picture);
+    EXPECT_EQ(encode_image(picture, format), file(name)) << format;
+    write_image(at(name), grey);
+    EXPECT_EQ(encode_image(grey, format), file(name)) << format;
+  }
+  EXPECT_THROW(encode_image(grey, "tif"), std::invalid_argument);
+  EXPECT_THROW(encode_image(Raster<Rgb>(), "png"), std::invalid_argument);
 }
 
 TEST_F(Image, FailuresLeaveNothing) {

@@ -102,6 +102,25 @@ int fail_unknown_verb(const CLI::App& app, const std::string& word) {
                                   fmt::join(names, ", ")));
 }
 
+/// The command line as a shell takes it: words with spaces and other signs are quoted.
+std::string command_line(int argc, char** argv) {
+  constexpr std::string_view plain =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_@%+=:,./-";
+  std::string line = "dem";
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view word = argv[i];
+    line += ' ';
+    if (!word.empty() && word.find_first_not_of(plain) == word.npos) {
+      line += word;
+      continue;
+    }
+    line += '\'';
+    for (const char c : word) c == '\'' ? line += "'\\''" : line += c;
+    line += '\'';
+  }
+  return line;
+}
+
 /// `code`, unless what was printed could not be written.
 int flushed(int code) {
   if (std::fflush(stdout) == 0) return code;
@@ -136,7 +155,7 @@ int run(int argc, char** argv) {
   app.get_formatter()->column_width(31);
   app.require_subcommand(1);
   Shell shell;
-  shell.command = fmt::format("dem {}", fmt::join(argv + 1, argv + argc, " "));
+  shell.command = command_line(argc, argv);
   add_info(app, shell);
   add_sample(app, shell);
   add_fill(app, shell);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "curve/chart.h"
 #include "dem/baselines.h"
 #include "dem/greedy.h"
 #include "dem/sample.h"
@@ -64,6 +63,15 @@ double cells_needed(const std::vector<const BudgetPoint*>& curve, double rmse_m)
 
 std::string svg(const std::string& title, const Dem& truth, const BudgetOptions& options,
                 const std::vector<BudgetPoint>& points) {
+  return svg_chart(title,
+                   fmt::format("{} x {} cells, reconstructed by {} from the cells kept.",
+                               truth.z.cols(), truth.z.rows(), options.method),
+                   budget_panels(truth, points));
+}
+
+}  // namespace
+
+std::vector<Panel> budget_panels(const Dem& truth, const std::vector<BudgetPoint>& points) {
   const double all = double(count(truth.known));
   Panel error{"Error",
               {"cells kept, % (logarithmic)", true, false, {}},
@@ -80,13 +88,8 @@ std::string svg(const std::string& title, const Dem& truth, const BudgetOptions&
     error.series.push_back(rmse);
     worst.series.push_back(most);
   }
-  return svg_chart(title,
-                   fmt::format("{} x {} cells, reconstructed by {} from the cells kept.",
-                               truth.z.cols(), truth.z.rows(), options.method),
-                   {error, worst});
+  return {error, worst};
 }
-
-}  // namespace
 
 void check(const BudgetOptions& options) {
   find_method(all_fill_methods(), options.method);

@@ -28,6 +28,9 @@ struct BudgetPoint {
 std::vector<BudgetPoint> measure_budget(const Dem& truth, const BudgetOptions& options,
                                         const Run& run);
 
+/// Errors against the cells kept, to be drawn.
+std::vector<Panel> budget_panels(const Dem& truth, const std::vector<BudgetPoint>& points);
+
 /// Writes budget.csv, budget.json and budget.svg; returns what budget.json holds.
 Json write_budget(const OutputFolder& folder, const std::string& title, const Dem& truth,
                   const BudgetOptions& options, const std::vector<BudgetPoint>& points,

@@ -5,13 +5,14 @@
 
 #include "curve/budget.h"
 #include "curve/experiment.h"
+#include "report/curve_report.h"
 #include "verbs.h"
 
 namespace dem::app {
 namespace {
 
 struct Options {
-  std::string truth, dir;
+  std::string truth, dir, report;
   std::vector<std::string> rivals;
   CurveOptions curve;
   BudgetOptions budget;  // when an error is wanted
@@ -29,16 +30,22 @@ int budget(const Options& given, Shell& shell) {
   if (given.curve.percents != CurveOptions().percents) o.percents = given.curve.percents;
   o.seed = given.curve.seed;
   check(o);
+  check_report(given.report, shell.overwrite);
   const OutputFolder folder(given.dir);
   for (const char* name : kBudgetFiles) check_writable(folder.file(name), shell.overwrite);
   const Run run = shell.run();
+  Stopwatch watch;
   const DemFile file = read_dem(given.truth, given.read, run.part(0, 0.02));
   if (count(file.dem.known) < 16)
     throw IoError(given.truth, "fewer than sixteen known cells; nothing to choose from");
+  watch.lap("reading");
   const auto points = measure_budget(file.dem, o, run.part(0.02, 1));
+  watch.lap("measuring");
   const std::string title =
       "Cells to keep of " + std::filesystem::path(given.truth).filename().string();
   const Json json = write_budget(folder, title, file.dem, o, points, shell.overwrite);
+  if (!given.report.empty())
+    write_report(given.report, budget_page(given.truth, file.dem, o, points), watch, shell);
   shell.print(json, budget_table(file.dem, o, points));
   shell.say("wrote {}, {}, {}", folder.file("budget.csv"), folder.file("budget.json"),
             folder.file("budget.svg"));
@@ -53,16 +60,22 @@ int curve(const Options& o, Shell& shell) {
     const auto scores = read_rivals(path);
     options.rivals.insert(options.rivals.end(), scores.begin(), scores.end());
   }
+  check_report(o.report, shell.overwrite);
   const OutputFolder folder(o.dir);
   for (const char* name : kCurveFiles) check_writable(folder.file(name), shell.overwrite);
 
   const Run run = shell.run();
+  Stopwatch watch;
   const DemFile file = read_dem(o.truth, o.read, run.part(0, 0.02));
   if (count(file.dem.known) < 2)
     throw IoError(o.truth, "fewer than two known cells; nothing to remove");
+  watch.lap("reading");
   const auto scores = measure_curve(file.dem, options, run.part(0.02, 1));
+  watch.lap("measuring");
   const std::string title = "Filling " + std::filesystem::path(o.truth).filename().string();
   Json json = write_curve(folder, title, file.dem, options, scores, shell.overwrite);
+  if (!o.report.empty())
+    write_report(o.report, curve_page(o.truth, file.dem, options, scores), watch, shell);
 
   json["files"] = Json::array();
   for (const char* name : kCurveFiles) json["files"].push_back(folder.file(name));
@@ -112,6 +125,7 @@ void add_curve(CLI::App& app, Shell& shell) {
   verb->add_option("--seed", o->curve.seed, "of the cells that are kept")
       ->type_name("N")
       ->capture_default_str();
+  add_report_option(*verb, o->report);
   add_read_options(*verb, o->read);
 }
 

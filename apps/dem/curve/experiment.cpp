@@ -8,7 +8,6 @@
 #include <map>
 #include <set>
 
-#include "curve/chart.h"
 #include "dem/baselines.h"
 #include "dem/geodesy.h"
 #include "dem/sample.h"
@@ -65,6 +64,18 @@ Json as_json(const Score& s) {
 
 std::string svg(const std::string& title, const Dem& truth, const CurveOptions& options,
                 const std::vector<Score>& scores) {
+  std::string note = fmt::format(
+      "{} x {} cells, kept at random (seed {}), then filled; time is the median of {} run{}.",
+      truth.z.cols(), truth.z.rows(), options.seed, options.repeats,
+      options.repeats == 1 ? "" : "s");
+  if (!options.rivals.empty())
+    note += " Dashed: other programs; their time includes start, reading and writing.";
+  return svg_chart(title, note, curve_panels(options, scores));
+}
+
+}  // namespace
+
+std::vector<Panel> curve_panels(const CurveOptions& options, const std::vector<Score>& scores) {
   Axis rate{"cells kept, % (logarithmic)", true, true, {}};
   for (double tick : {99.0, 50.0, 20.0, 10.0, 5.0, 2.0, 1.0})
     if (tick <= std::ranges::max(options.percents) && tick >= std::ranges::min(options.percents))
@@ -86,16 +97,8 @@ std::string svg(const std::string& title, const Dem& truth, const CurveOptions& 
   };
   draw(scores, false);
   draw(options.rivals, true);
-  std::string note = fmt::format(
-      "{} x {} cells, kept at random (seed {}), then filled; time is the median of {} run{}.",
-      truth.z.cols(), truth.z.rows(), options.seed, options.repeats,
-      options.repeats == 1 ? "" : "s");
-  if (!options.rivals.empty())
-    note += " Dashed: other programs; their time includes start, reading and writing.";
-  return svg_chart(title, note, {error, time});
+  return {error, time};
 }
-
-}  // namespace
 
 double median(std::vector<double> values) {
   std::ranges::sort(values);

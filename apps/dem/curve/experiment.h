@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common.h"
+#include "curve/chart.h"
 #include "dem/evaluate.h"
 #include "dem/methods.h"
 
@@ -63,6 +64,9 @@ std::vector<Score> read_rivals(const std::string& path);
 void check(const CurveOptions& options);
 
 std::vector<Score> measure_curve(const Dem& truth, const CurveOptions& options, const Run& run);
+
+/// Error and time against the cells kept, to be drawn.
+std::vector<Panel> curve_panels(const CurveOptions& options, const std::vector<Score>& scores);
 
 /// Names of the files that write_curve makes.
 inline constexpr const char* kCurveFiles[] = {"curves.csv", "curves.json", "curves.svg"};

@@ -7,6 +7,7 @@
 #include "dem/baselines.h"
 #include "fill/hole_fill.h"
 #include "fill/stream_fill.h"
+#include "report/fill_report.h"
 #include "verbs.h"
 
 namespace dem::app {
@@ -24,7 +25,7 @@ struct Options {
   std::optional<std::uint64_t> seed;
   std::string method{default_fill_method()};
   std::vector<std::string> set;
-  std::string origin, table, memory, water;
+  std::string origin, table, memory, water, report;
   std::vector<std::string> aux;
   bool resume = false;
   bool whole = false;
@@ -191,6 +192,17 @@ void write_table(const Options& o, const FillOutcome& out, bool overwrite) {
   write_text(o.table, table.dump(2, ' ', false, Json::error_handler_t::replace) + "\n", overwrite);
 }
 
+/// Whatever the raster: its sections were made before the output was written, so that a stop while
+/// they are made leaves the output as it was.
+void write_page(const Options& o, const ChosenMethod& chosen, const FillOutcome& out, Json sections,
+                const Stopwatch& watch, Shell& shell) {
+  if (o.report.empty()) return;
+  ReportPage page = fill_page(o.in, chosen, out);
+  page.sections = std::move(sections);
+  page.making.insert(page.making.begin() + 1, {"output", o.out});
+  write_report(o.report, page, watch, shell);
+}
+
 int exit_code(const FillOutcome& out) {
   if (!out.known_kept) return kCheckFailed;
   return out.left > 0 ? kUnfilled : kDone;
@@ -199,16 +211,25 @@ int exit_code(const FillOutcome& out) {
 /// Strip by strip, within a bound of memory.
 int fill_stream(const Options& o, const FillRequest& request, std::size_t memory, Shell& shell) {
   const Run run = shell.run();
+  Stopwatch watch;
   StreamFill::Options options{o.in, o.out, o.read, memory, o.resume, ""};
   for (const auto& part : {o.method, settings_text(request.method.settings), o.choice.text(),
                            o.sigma, o.table, std::string(o.whole ? "whole" : ""), o.memory, o.water,
                            fmt::format("{}", fmt::join(o.aux, " "))})
     options.settings += part + " | ";
-  StreamFill job(options, request, run.part(0, 0.7));
+  StreamFill job(options, request, run.part(0, 0.65));
   FillOutcome& out = job.outcome();
   if (job.resumed_windows() > 0)
     shell.say("resumed: {} of {} windows were done", grouped(job.resumed_windows()),
               grouped(out.windows));
+
+  watch.lap("finding holes and filling");
+  Json sections;
+  if (!o.report.empty()) {
+    const auto read = [&](const Box& box) { return job.read(box); };
+    sections = fill_sections(out, o.method, {job.size(), job.ref(), read}, run.part(0.65, 0.7));
+    watch.lap("drawing");
+  }
 
   WriteOptions write = o.write;
   write.overwrite = shell.overwrite;
@@ -222,6 +243,8 @@ int fill_stream(const Options& o, const FillRequest& request, std::size_t memory
   if (!o.table.empty()) write_table(o, out, shell.overwrite);
   job.write(o.out, StreamFill::Layer::heights, job.source(), write, run.part(0.85, 1));
   job.finish();
+  watch.lap("writing");
+  write_page(o, request.method, out, std::move(sections), watch, shell);
   report(o, request.method, out, job.source().type, shell);
   return exit_code(out);
 }
@@ -238,17 +261,32 @@ int fill(const Options& o, Shell& shell) {
   const std::size_t memory = stream_memory(o);
   for (const std::string& path : {o.out, o.sigma, o.origin, o.table})
     if (!path.empty()) check_writable(path, shell.overwrite);
+  check_report(o.report, shell.overwrite);
 
-  const FillRequest request{chosen,           o.choice,          o.whole, !o.table.empty(),
-                            !o.sigma.empty(), !o.origin.empty(), o.aux,   o.water};
+  const FillRequest request{chosen,
+                            o.choice,
+                            o.whole,
+                            !o.table.empty(),
+                            !o.sigma.empty(),
+                            !o.origin.empty() || !o.report.empty(),
+                            o.aux,
+                            o.water};
   if (memory > 0) return fill_stream(o, request, memory, shell);
 
   const Run run = shell.run();
+  Stopwatch watch;
   DemFile file = read_dem(o.in, o.read, run.part(0, 0.2));
   if (count(file.dem.known) == 0)
     throw IoError(o.in, "no known cell; at least one is needed to fill the others");
   warn_of_outliers(file.dem, shell);
-  const FillOutcome out = fill_holes_of(file.dem, request, run.part(0.2, 0.8));
+  watch.lap("reading");
+  const FillOutcome out = fill_holes_of(file.dem, request, run.part(0.2, 0.75));
+  watch.lap("finding holes and filling");
+  Json sections;
+  if (!o.report.empty()) {
+    sections = fill_sections(out, o.method, filled_raster(file.dem, out), run.part(0.75, 0.8));
+    watch.lap("drawing");
+  }
 
   WriteOptions write = o.write;
   write.overwrite = shell.overwrite;
@@ -268,6 +306,8 @@ int fill(const Options& o, Shell& shell) {
   }
   if (!o.table.empty()) write_table(o, out, shell.overwrite);
   write_dem(o.out, file.dem, file.source, write, run.part(0.87, 1));
+  watch.lap("writing");
+  write_page(o, chosen, out, std::move(sections), watch, shell);
   report(o, chosen, out, file.source.type, shell);
   return exit_code(out);
 }
@@ -314,8 +354,8 @@ void add_fill(CLI::App& app, Shell& shell) {
       app, shell, "fill", "Fill the holes of a DEM; known cells stay as they are, bit for bit",
       "  dem fill N36E008.hgt filled.hgt\n"
       "  dem fill sparse.tif filled.tif --sigma sigma.tif           # and how sure each cell is\n"
-      "  dem fill sparse.tif rough.tif --roughness auto --seed 7    # as rough as the terrain\n"
       "  dem fill tiles/ filled/ --memory 2G                        # a folder of .hgt tiles\n"
+      "  dem fill sparse.tif filled.tif --report filled.html        # a page to look at\n"
       "Methods: " +
           method_names() + " (their settings: dem methods NAME)\n" + HoleChoice::condition_help(),
       [o, &shell] { return fill(*o, shell); });
@@ -348,6 +388,7 @@ void add_fill(CLI::App& app, Shell& shell) {
   verb->add_option("--report-holes", o->table,
                    "also write a JSON table of holes, with errors of hidden rim cells")
       ->type_name("FILE");
+  add_report_option(*verb, o->report);
   verb->add_option("--aux", o->aux,
                    "a DEM to fill over; each hole takes the best of several, or none")
       ->allow_extra_args(false)

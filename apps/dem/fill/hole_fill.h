@@ -68,6 +68,13 @@ void account(const HolePatch& patch, const FillPlan& plan, FillOutcome& outcome)
 /// Fills the chosen holes of `dem` in place.
 FillOutcome fill_holes_of(Dem& dem, const FillRequest& request, const Run& run);
 
+/// A part of what was filled, to be looked at.
+struct FilledPart {
+  Dem dem;                      ///< cells left void are unknown
+  Raster<std::uint8_t> origin;  ///< CellOrigin
+  Raster<float> sigma{};        ///< empty: not asked for
+};
+
 /// The table of holes as JSON.
 Json hole_table(const FillOutcome& outcome, const std::string& method);
 

@@ -195,12 +195,13 @@ void StreamFill::overlay(const std::vector<StripPiece>& pieces, Layer layer, con
       if (run.row < box.row || run.row >= box.row + box.rows) continue;
       for (int col = run.begin; col < run.end; ++col) {
         const std::size_t i = first + std::size_t(col - run.begin);
-        float& z = rows.z(col, run.row - box.row);
+        if (col < box.col || col >= box.col + box.cols) continue;
+        float& z = rows.z(col - box.col, run.row - box.row);
         if (layer == Layer::origin) z = float(piece.origin[i]);
         if (piece.origin[i] == CellOrigin::left) continue;
         if (layer == Layer::heights) z = piece.z[i];
         if (layer == Layer::sigma && !piece.sigma.empty()) z = piece.sigma[i];
-        rows.known(col, run.row - box.row) = 1;
+        rows.known(col - box.col, run.row - box.row) = 1;
       }
     }
   }
@@ -236,6 +237,25 @@ void StreamFill::write(const std::string& path, Layer layer, const Source& sourc
   }
   if (layer == Layer::heights) outcome_.known_kept = sum == outcome_.known_checksum;
   writer.commit();
+}
+
+FilledPart StreamFill::read(const Box& box) {
+  FilledPart part{reader_.read(box), Raster<std::uint8_t>(box.size()), {}};
+  Dem origin{Raster<float>(box.size()), Mask(box.size()), {}, {}}, sigma = origin;
+  for (std::size_t i = 0; i < box.cells(); ++i)
+    origin.z.cells()[i] =
+        float(part.dem.known.cells()[i] ? CellOrigin::measured : CellOrigin::left);
+  const int last = (box.row + box.rows - 1) / Journal::strip_rows;
+  for (int strip = box.row / Journal::strip_rows; strip <= last; ++strip) {
+    const auto pieces = journal_->strip(strip);
+    overlay(pieces, Layer::heights, box, part.dem);
+    overlay(pieces, Layer::origin, box, origin);
+    overlay(pieces, Layer::sigma, box, sigma);
+  }
+  std::ranges::transform(origin.z.cells(), part.origin.cells().begin(),
+                         [](float kind) { return std::uint8_t(kind); });
+  part.sigma = std::move(sigma.z);
+  return part;
 }
 
 void StreamFill::finish() {

@@ -32,6 +32,8 @@ class StreamFill {
 
   FillOutcome& outcome() { return outcome_; }
   const Source& source() const { return reader_.source(); }
+  Size size() const { return reader_.size(); }
+  const GeoRef& ref() const { return reader_.ref(); }
   std::size_t resumed_windows() const { return resumed_; }
 
   enum class Layer { heights, sigma, origin };
@@ -40,6 +42,9 @@ class StreamFill {
   /// that were found (FillOutcome::known_kept).
   void write(const std::string& path, Layer layer, const Source& source,
              const WriteOptions& options, const Run& run);
+
+  /// A box of what was filled, before finish().
+  FilledPart read(const Box& box);
 
   /// Takes the journal away: nothing is left to resume.
   void finish();
