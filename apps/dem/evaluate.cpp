@@ -1,13 +1,9 @@
 // dem evaluate: how good a reconstruction is.
 
-#include "dem/evaluate.h"
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cmath>
-#include <optional>
 
-#include "dem/geodesy.h"
+#include "scores.h"
 #include "verbs.h"
 
 namespace dem::app {
@@ -18,20 +14,6 @@ struct Options {
   std::vector<std::string> expect;
   ReadOptions read;
 };
-
-/// A number of Errors, as --expect and the tables name it.
-struct Measure {
-  const char* name;
-  const char* unit;
-  double Errors::*value;
-};
-constexpr Measure kMeasures[] = {{"rmse", "m", &Errors::rmse_m},
-                                 {"mae", "m", &Errors::mae_m},
-                                 {"bias", "m", &Errors::bias_m},
-                                 {"nmad", "m", &Errors::nmad_m},
-                                 {"le90", "m", &Errors::le90_m},
-                                 {"max", "m", &Errors::max_m},
-                                 {"slope_rmse", "deg", &Errors::slope_rmse_deg}};
 
 /// "rmse<20".
 struct Expectation {
@@ -67,57 +49,21 @@ void check_size(const std::string& path, const Dem& dem, Size size) {
                                     dem.z.rows(), size.cols, size.rows));
 }
 
-Mask both(const Mask& a, const Mask& b) {
-  Mask m = a;
-  for (std::size_t i = 0; i < m.cells().size(); ++i) m.cells()[i] = a.cells()[i] && b.cells()[i];
-  return m;
-}
-
-struct Scores {
-  Errors all;
-  std::optional<Errors> filled;
-  std::size_t unfilled = 0;  // cells of the truth that GOT does not know
-  std::vector<SpectrumBin> truth, got;
-};
-
-Scores score(const Options& o, const Run& run) {
+Scores scores_of(const Options& o, const Run& run) {
   const DemFile truth = read_dem(o.truth, o.read, run.part(0, 0.2));
   const DemFile got = read_dem(o.got, o.read, run.part(0.2, 0.4));
   const Size size = truth.dem.size();
   check_size(o.got, got.dem, size);
-  const Mask comparable = both(truth.dem.known, got.dem.known);
+  const Mask comparable = known_in_both(truth.dem, got.dem);
   if (count(comparable) == 0) throw IoError(o.got, "no cell is known both here and in TRUTH");
-
-  Scores scores;
-  scores.unfilled = count(truth.dem.known) - count(comparable);
-  const auto spacing = spacing_by_row(truth.dem.ref, size);
-  const Raster<float> truth_z = completed(truth.dem, got.dem.z),
-                      got_z = completed(got.dem, truth.dem.z);
-  scores.all = compare(truth_z, got_z, comparable, spacing, run.part(0.4, 0.6));
+  Mask filled;
   if (!o.known.empty()) {
-    const DemFile sampled = read_dem(o.known, o.read, run.part(0.6, 0.7));
+    const DemFile sampled = read_dem(o.known, o.read, run.part(0.4, 0.6));
     check_size(o.known, sampled.dem, size);
-    Mask where = comparable;
-    for (std::size_t i = 0; i < where.cells().size(); ++i)
-      if (sampled.dem.known.cells()[i]) where.cells()[i] = 0;
-    if (count(where) == 0) throw IoError(o.known, "every cell is known; no filled cell to score");
-    scores.filled = compare(truth_z, got_z, where, spacing, run.part(0.7, 0.8));
+    filled = without_known(comparable, sampled.dem);
+    if (count(filled) == 0) throw IoError(o.known, "every cell is known; no filled cell to score");
   }
-
-  // A spectrum needs whole surfaces, large enough to hold a few waves.
-  const bool whole = count(comparable) == size.cells() && size.cols >= 16 && size.rows >= 16;
-  if (whole) {
-    run.report(0.8, "spectrum");
-    scores.truth = power_spectrum(truth.dem.z, truth.dem.spacing);
-    scores.got = power_spectrum(got.dem.z, truth.dem.spacing);
-  }
-  return scores;
-}
-
-Json as_json(const Errors& e) {
-  Json json{{"cells", e.cells}};
-  for (const auto& m : kMeasures) json[std::string(m.name) + "_" + m.unit] = e.*m.value;
-  return json;
+  return score(truth.dem, got.dem, comparable, filled, run.part(0.6, 1));
 }
 
 std::string error_table(const Scores& s) {
@@ -151,19 +97,11 @@ int evaluate(const Options& o, Shell& shell) {
   std::vector<Expectation> expectations;
   for (const auto& text : o.expect) expectations.push_back(parse_expectation(text));
   const Run run = shell.run();
-  const Scores s = score(o, run);
+  const Scores s = scores_of(o, run);
   const Errors& judged = s.filled ? *s.filled : s.all;
 
-  Json json{{"all", as_json(s.all)},
-            {"filled", s.filled ? as_json(*s.filled) : Json()},
-            {"unfilled_cells", s.unfilled},
-            {"spectrum", Json::array()},
-            {"expect", Json::array()}};
-  for (std::size_t i = 0; i < s.truth.size(); ++i)
-    json["spectrum"].push_back({{"wavelength_m", s.truth[i].wavelength_m},
-                                {"truth_m4", s.truth[i].power_m2},
-                                {"got_m4", s.got[i].power_m2},
-                                {"waves", s.truth[i].waves}});
+  Json json = as_json(s);
+  json["expect"] = Json::array();
   bool all_met = true;
   std::string verdicts;
   for (const auto& e : expectations) {

@@ -102,39 +102,11 @@ void report(const Options& o, const ChosenMethod& chosen, const FillOutcome& out
         grouped(out.holes.size()), grouped(out.border_cells), left, o.method, grouped(out.windows),
         out.windows == 1 ? "" : "s", out.seconds, known_cells(o, out, type), o.out);
   }
-  Json aux = Json::array();
-  for (const auto& fit : out.aux) {
+  for (const auto& fit : out.aux)
     if (!fit.warning.empty()) shell.say("warning: {} {}", fit.path, fit.warning);
-    aux.push_back({{"path", fit.path},
-                   {"offset_m", fit.offset_m},
-                   {"shift_cells", {fit.shift_cols, fit.shift_rows}},
-                   {"warning", fit.warning}});
-  }
-  Json figures = Json::array();
-  for (const auto& f : out.figures)
-    figures.push_back({{"name", f.name}, {"value", f.value}, {"unit", f.unit}});
-  Json settings = Json::object();
-  for (const auto& [key, value] : chosen.settings) settings[key] = value;
-  shell.print({{"output", o.out},
-               {"method", o.method},
-               {"settings", settings},
-               {"unknown", out.unknown},
-               {"voids", out.holes.size()},
-               {"border_voids", out.border_holes},
-               {"border_void_cells", out.border_cells},
-               {"windows", out.windows},
-               {"filled", out.filled},
-               {"water", out.water_cells},
-               {"over_aux", out.guide_cells},
-               {"aux", aux},
-               {"left_at_border", out.left_at_border},
-               {"left_by_choice", out.left_by_choice},
-               {"left", out.left},
-               {"known_unchanged", out.known_kept},
-               {"known_checksum", fmt::format("{:016x}", out.known_checksum)},
-               {"seconds", out.seconds},
-               {"report", figures}},
-              "");
+  Json json{{"output", o.out}};
+  json.update(as_json(out, o.method, chosen.settings));
+  shell.print(json, "");
 }
 
 const std::vector<CellClass> kOrigins{{0, "measured", {160, 160, 160}},

@@ -72,6 +72,9 @@ void account(const HolePatch& patch, const FillPlan& plan, FillOutcome& outcome)
 /// Fills the chosen holes of `dem` in place.
 FillOutcome fill_holes_of(Dem& dem, const FillRequest& request, const Run& run);
 
+/// What was done, as `dem fill --json` prints it, and `libdem.fill` reports it.
+Json as_json(const FillOutcome& outcome, const std::string& method, const Settings& settings);
+
 /// The table of holes as JSON.
 Json hole_table(const FillOutcome& outcome, const std::string& method);
 
