@@ -63,6 +63,7 @@ LIBRARIES = {
     "OpenImageIO/": {"io"},
     "CLI/": {"apps"},
     "nlohmann/": {"apps"},
+    "pybind11/": {"apps"},
 }
 POSIX = re.compile(r"(sys/\w+|unistd|fcntl|signal|stdlib|termios)\.h")  # the operating system: io and apps; memory: values
 STANDARD = re.compile(r"\w+")

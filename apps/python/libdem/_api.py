@@ -3,6 +3,7 @@
 import dataclasses
 import enum
 import json
+import operator
 import os
 import types
 import warnings
@@ -101,17 +102,61 @@ def _as_dem(z, known=None, spacing=None, nodata=None, to_world=None, crs="", war
         known = mask if known is None else mask & (known != 0)
     if spacing is not None:
         spacing = _pair("spacing", spacing)
-    dem = Dem(array, known, nodata, spacing, to_world, crs)
+    if to_world is not None:
+        to_world = _numbers("to_world", to_world, 6, "six numbers: x0, dx, 0, y0, 0, -dy")
+    dem = _call.Dem(array, known, nodata, spacing, to_world, crs)
     if warn and (text := dem._outlier_warning):
         warnings.warn(text, stacklevel=3)
     return dem, True
 
 
+def _numbers(name, value, count, must_be):
+    """So many numbers as floats; one number stands for all of two."""
+    try:
+        numbers = [float(v) for v in ([value] * count if count == 2 and np.isscalar(value) else value)]
+    except (TypeError, ValueError):
+        numbers = []
+    if len(numbers) != count:
+        raise ValueError(f"{name} = {value!r}; must be {must_be}")
+    return tuple(numbers)
+
+
 def _pair(name, value):
-    pair = (value, value) if np.isscalar(value) else tuple(value)
-    if len(pair) != 2:
-        raise ValueError(f"{name} = {value!r}; must be one length or two, east and north, in metres")
-    return float(pair[0]), float(pair[1])
+    return _numbers(name, value, 2, "one length or two, east and north, in metres")
+
+
+def _whole(name, value, least):
+    try:
+        number = operator.index(value)
+    except TypeError:
+        number = least - 1
+    if not least <= number < 2**31:
+        raise ValueError(f"{name} = {value!r}; must be a whole number from {least} up")
+    return number
+
+
+def _threads(threads):
+    return _whole("threads", threads, 0)
+
+
+class _Core:
+    """The module's functions; arguments of a wrong type are told of in one line."""
+
+    def __getattr__(self, name):
+        function = getattr(_core, name)
+
+        def call(*arguments):
+            try:
+                return function(*arguments)
+            except TypeError as error:
+                if "incompatible" not in str(error):
+                    raise
+                expected = str(error).split("\n")[1].strip().removeprefix("1. ")
+                raise TypeError(f"{name}: an argument has a wrong type; expected {expected}") from None
+        return call
+
+
+_call = _Core()
 
 
 def _method_settings(method, settings):
@@ -145,13 +190,13 @@ def fill(z, known=None, *, method=_core.default_method, spacing=None, nodata=Non
     Copies: z once (a Dem too: it is not changed); what comes back is not copied.
     """
     dem, temporary = _as_dem(z, known, spacing, nodata, to_world, crs)
-    choice = _core.HoleChoice(inner_only, max_area_km2, max_distance_m, min_cells, where,
+    choice = _call.HoleChoice(inner_only, max_area_km2, max_distance_m, min_cells, where,
                               os.fspath(region))
     files = [os.fspath(file) for file in ([aux] if isinstance(aux, (str, os.PathLike)) else aux)]
     with callback(progress) as call:
-        filled, sigma, source, report = _core.fill(
+        filled, sigma, source, report = _call.fill(
             dem, temporary, method, _method_settings(method, settings), choice, whole, files,
-            os.fspath(water), report_holes, threads, call)
+            os.fspath(water), report_holes, _threads(threads), call)
     return Filled(filled, sigma, source, json.loads(report))
 
 
@@ -169,8 +214,8 @@ def supersample(z, factor, *, known=None, preserve="heights", nodes=None, method
     """
     dem, _ = _as_dem(z, known, spacing, nodata, to_world, crs)
     with callback(progress) as call:
-        return Filled(*_with_no_source(_core.supersample(
-            dem, factor, preserve, nodes, method, _method_settings(method, settings), threads, call)))
+        return Filled(*_with_no_source(_call.supersample(
+            dem, factor, preserve, nodes, method, _method_settings(method, settings), _threads(threads), call)))
 
 
 def grid(x, y, z, *, like=None, bounds=None, cell="", crs="", nodes=False, point_sigma=None,
@@ -195,11 +240,13 @@ def grid(x, y, z, *, like=None, bounds=None, cell="", crs="", nodes=False, point
     """
     if like is not None:
         like, _ = _as_dem(like)
+    if bounds is not None:
+        bounds = _numbers("bounds", bounds, 4, "west, south, east, north")
     cell = f"{cell}m" if isinstance(cell, (int, float)) else cell
     with callback(progress) as call:
-        return Filled(*_with_no_source(_core.grid(
+        return Filled(*_with_no_source(_call.grid(
             x, y, z, point_sigma, point_weight, like, bounds, cell, crs, nodes, combine,
-            reject_outliers, snap, passes, method, _method_settings(method, settings), threads, call)))
+            reject_outliers, snap, passes, method, _method_settings(method, settings), _threads(threads), call)))
 
 
 def _with_no_source(result):
@@ -231,7 +278,7 @@ def sample(z, *, keep=None, count=None, every=None, edges=None, voids=None, trac
         raise ValueError(f"exactly one of {', '.join(ways)} is needed; {len(given)} were given")
     dem, _ = _as_dem(z, known, spacing, nodata, to_world, crs)
     with callback(progress) as call:
-        return _core.sample(dem, *given[0], seed, method, threads, call)
+        return _call.sample(dem, *given[0], seed, method, _threads(threads), call)
 
 
 def evaluate(truth, got, sampled=None, *, spacing=None, nodata=None, to_world=None, crs="", threads=0,
@@ -246,8 +293,8 @@ def evaluate(truth, got, sampled=None, *, spacing=None, nodata=None, to_world=No
         return _as_dem(z, **({} if own else dict(spacing=spacing, nodata=nodata, to_world=to_world, crs=crs)),
                        warn=False)[0]
     with callback(progress) as call:
-        text = _core.evaluate(as_dem(truth), as_dem(got), None if sampled is None else as_dem(sampled),
-                              threads, call)
+        text = _call.evaluate(as_dem(truth), as_dem(got), None if sampled is None else as_dem(sampled),
+                              _threads(threads), call)
     scores = json.loads(text)
     errors = {key: value and types.SimpleNamespace(**value) for key, value in scores.items()
               if key in ("all", "filled")}
@@ -274,10 +321,11 @@ def generate(name, shape=None, *, spacing=30.0, origin=(0.0, 0.0), crs="", image
     elif image is not None:
         array, _ = _array(image)
     if shape is not None:
-        shape = (shape, shape) if np.isscalar(shape) else tuple(shape)
+        rows, cols = _numbers("shape", shape, 2, "rows and columns")
+        shape = _whole("rows", int(rows), 1), _whole("columns", int(cols), 1)
     with callback(progress) as call:
-        return _core.generate(name, _tables.as_settings(settings), shape, _pair("spacing", spacing),
-                              tuple(origin), crs, array, file, median, threads, call)
+        return _call.generate(name, _tables.as_settings(settings), shape, _pair("spacing", spacing),
+                              _numbers("origin", origin, 2, "x and y"), crs, array, file, median, _threads(threads), call)
 
 
 def erode(z, *, known=None, spacing=None, nodata=None, to_world=None, crs="", threads=0, progress=None,
@@ -288,7 +336,7 @@ def erode(z, *, known=None, spacing=None, nodata=None, to_world=None, crs="", th
     """
     dem, _ = _as_dem(z, known, spacing, nodata, to_world, crs)
     with callback(progress) as call:
-        return Eroded(*_core.erode(dem, _tables.as_settings(settings), threads, call))
+        return Eroded(*_call.erode(dem, _tables.as_settings(settings), _threads(threads), call))
 
 
 def render(z, style="relief", *, known=None, spacing=None, nodata=None, to_world=None, crs="", camera=None,
@@ -304,8 +352,8 @@ def render(z, style="relief", *, known=None, spacing=None, nodata=None, to_world
     def place(point):
         return "" if point is None else ",".join(str(part) for part in point)
     with callback(progress) as call:
-        return _core.render(dem, style, _tables.as_settings(settings), place(camera), place(target),
-                            threads, call)
+        return _call.render(dem, style, _tables.as_settings(settings), place(camera), place(target),
+                            _threads(threads), call)
 
 
 def read(path, *, band=0, nodata=None, detect_nodata=True, tile="", height_range=None, threads=0,
@@ -319,7 +367,7 @@ def read(path, *, band=0, nodata=None, detect_nodata=True, tile="", height_range
     height_range    (low, high) in metres of black and white of a heightmap image
     """
     with callback(progress) as call:
-        return _core.read(os.fspath(path), band, nodata, detect_nodata, tile, height_range, threads, call)
+        return _call.read(os.fspath(path), band, nodata, detect_nodata, tile, height_range, _threads(threads), call)
 
 
 def write(path, z, *, known=None, spacing=None, to_world=None, crs="", format="", dtype=None, nodata=None,
@@ -332,9 +380,11 @@ def write(path, z, *, known=None, spacing=None, to_world=None, crs="", format=""
     nodata    the value that the file declares as unknown
     """
     dem, _ = _as_dem(z, known, spacing, None, to_world, crs, warn=False)
+    if not overwrite and os.path.exists(path):
+        raise FileExistsError(f"{os.fspath(path)}: exists; overwrite=True replaces it")
     with callback(progress) as call:
-        _core.write(os.fspath(path), dem, format, None if dtype is None else str(np.dtype(dtype)), nodata,
-                    compress, overwrite, list((metadata or {}).items()), threads, call)
+        _call.write(os.fspath(path), dem, format, None if dtype is None else str(np.dtype(dtype)), nodata,
+                    compress, overwrite, list((metadata or {}).items()), _threads(threads), call)
 
 
 fill.__doc__ += "\n    " + _tables.settings_doc(

@@ -27,14 +27,18 @@ def _plane(array):
 
 
 def _north_up(plane):
-    """Whether rows run from north to south, and the array's place with such rows: to_world of centres."""
-    transform = plane.rio.transform(recalc=True)
-    down = transform.e < 0
-    rows = plane.sizes[plane.rio.y_dim]
-    a, b, c, d, e, f = transform.a, transform.b, transform.c, transform.d, transform.e, transform.f
-    if not down:  # begin with the last row
-        c, f, b, e = c + b * rows, f + e * rows, -b, -e
-    return down, (c + (a + b) / 2, a, b, f + (d + e) / 2, d, e)
+    """Whether rows run from north to south, and to_world (of centres) of the array with such rows.
+
+    The coordinates say where cells are; how large they are is said without rounding by the transform
+    that came with the file, and taken from it where the two agree.
+    """
+    now, stored = plane.rio.transform(recalc=True), plane.rio.transform()
+    if now.b or now.d:
+        raise ValueError("the array's rows do not run along x; reproject it first")
+    sizes = [(now.a, stored.a), (-abs(now.e), -abs(stored.e))]
+    dx, dy = (b if abs(a - b) <= 1e-6 * abs(a) else a for a, b in sizes)
+    x, y = plane[plane.rio.x_dim].values, plane[plane.rio.y_dim].values
+    return bool(now.e < 0), (float(x[0]), dx, 0.0, float(y.max()), 0.0, dy)
 
 
 def as_dem(array, known=None):
@@ -48,11 +52,12 @@ def as_dem(array, known=None):
     return _api._as_dem(values, known, None, plane.rio.nodata, to_world, crs.to_wkt() if crs else "")[0]
 
 
-def _like(array, values, dtype):
-    plane = _plane(array)
-    values = values if _north_up(plane)[0] else values[::-1]
-    out = array.copy(data=np.asarray(values, dtype=dtype).reshape(array.shape))
-    return out.transpose(*array.dims)
+def _like(array, values):
+    """An array as the given one, its values from rows that run from north to south."""
+    values = values if _north_up(_plane(array))[0] else values[::-1]
+    if array.dims.index(array.rio.x_dim) < array.dims.index(array.rio.y_dim):
+        values = values.T
+    return array.copy(data=values.reshape(array.shape))
 
 
 @xr.register_dataarray_accessor("dem")
@@ -71,13 +76,13 @@ class DemAccessor:
         """
         dem = as_dem(self._array, known)
         filled = _api.fill(dem, **options)
-        elevation = _like(self._array, filled.elevation, filled.elevation.dtype)
+        elevation = _like(self._array, filled.elevation)
         if not full:
             return elevation
-        layers = {"elevation": elevation, "source": _like(self._array, filled.source, np.uint8)}
+        layers = {"elevation": elevation, "source": _like(self._array, filled.source)}
         layers["source"].attrs = {f"class_{o.value}": o.name for o in _api.CellOrigin}
         if filled.sigma is not None:
-            layers["sigma"] = _like(self._array, filled.sigma, np.float32)
+            layers["sigma"] = _like(self._array, filled.sigma)
             layers["sigma"].attrs = {"long_name": "standard deviation of the elevation", "units": "m"}
         return xr.Dataset(layers)
 
