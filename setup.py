@@ -2,8 +2,10 @@
 
     pip install --no-build-isolation .
 """
+import os
 import pathlib
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -21,7 +23,8 @@ class CMakeBuild(build_ext):
         build.mkdir(parents=True, exist_ok=True)
         generator = ["-G", "Ninja"] if shutil.which("ninja") else []
         subprocess.check_call(["cmake", "-S", ROOT, "-B", build, *generator, "-DCMAKE_BUILD_TYPE=Release",
-                               "-DDEM_BUILD_TESTS=OFF", "-DDEM_BUILD_BENCH=OFF", f"-DDEM_PYTHON={sys.executable}"])
+                               "-DDEM_BUILD_TESTS=OFF", "-DDEM_BUILD_BENCH=OFF", f"-DDEM_PYTHON={sys.executable}",
+                               *shlex.split(os.environ.get("CMAKE_ARGS", ""))])
         subprocess.check_call(["cmake", "--build", build, "--target", "dem_python_package", "--parallel"])
         package = pathlib.Path(self.get_ext_fullpath(extension.name)).resolve().parent
         package.mkdir(parents=True, exist_ok=True)
