@@ -11,5 +11,6 @@ void bind_tables(pybind11::module_& module);   // methods, generators, fields
 void bind_fill(pybind11::module_& module);     // fill, supersample, grid
 void bind_terrain(pybind11::module_& module);  // sample, generate, erode
 void bind_measure(pybind11::module_& module);  // evaluate, render
+void bind_mosaic(pybind11::module_& module);   // SharedRaster, for libdem.distributed
 
 }  // namespace dem::python

@@ -25,4 +25,5 @@ PYBIND11_MODULE(_core, module) {
   dem::python::bind_fill(module);
   dem::python::bind_terrain(module);
   dem::python::bind_measure(module);
+  dem::python::bind_mosaic(module);
 }
