@@ -196,7 +196,7 @@ def test_what_is_wrong_is_told_in_one_line(world, client, tmp_path):
             (tmp_path / "nowhere.vrt", {}, OSError, "nowhere.vrt: No such file"),
             (tmp_path / "empty", {}, OSError, "empty: holds no .hgt and no .tif"),
             (tmp_path / "short", {}, OSError, "N46E008.hgt: "),
-            (files[:-1] + [half], options(world, retries=0), OSError, "half.tif"),
+            (files[:-1] + [half], options(world, retries=0), OSError, "half.tif: "),
             ([], {}, ValueError, "sources is empty"),
             (one + [str(tmp_path / "b.tif")], {}, ValueError, "b.tif: its type is Int16; must be Float32, as in"),
             (one + [str(tmp_path / "c.tif")], {}, ValueError, "c.tif: its cells do not lie on the lattice"),

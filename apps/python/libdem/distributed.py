@@ -200,8 +200,16 @@ def scan_part(job, number, box):
 
 
 def fill_bundle(job, number, bundle):
-    """Fills the holes of one bundle into its journal."""
-    return _raster(job).fill(bundle, job.file("journal", number), job.key, job.threads, None)
+    """Fills the holes of one bundle into its journal. A worker that was given up may still be at it, or a
+    call that was stopped: then it is waited for."""
+    end = time.monotonic() + 600
+    while True:
+        try:
+            return _raster(job).fill(bundle, job.file("journal", number), job.key, job.threads, None)
+        except OSError as error:
+            if "another run is working with it" not in str(error) or time.monotonic() > end:
+                raise
+        time.sleep(0.2)
 
 
 def write_tile(job, number, tile, bundles, out, done):
@@ -389,11 +397,23 @@ def _plan(job, raster, tiles, tasks, report, bundle_cells):
         return pickle.loads(pathlib.Path(path).read_bytes())
     boxes = _parts(tiles, raster.size)
     scanning = [tasks.submit(scan_part, job, n, box) for n, box in enumerate(boxes)]
-    _gather(scanning, report, 0, 0.19, "looking for holes")
+    try:
+        _gather(scanning, report, 0, 0.19, "looking for holes")
+    except OSError:  # GDAL names the mosaic; name the tile
+        for future, box in zip(scanning, boxes):
+            if future.status == "error":
+                for tile in tiles:
+                    if _overlap(tile.box, box):
+                        _api.read(tile.path)
+        raise
     parts = [pathlib.Path(job.file("part", n)).read_bytes() for n in range(len(boxes))]
     plan = raster.plan(parts, [tile.box for tile in tiles], bundle_cells, report and functools.partial(_scaled, report))
     _write_whole(path, pickle.dumps(plan))
     return plan
+
+
+def _overlap(a, b):
+    return all(a[i] < b[i] + b[i + 2] and b[i] < a[i] + a[i + 2] for i in (0, 1))
 
 
 def _scaled(report, part, what):

@@ -33,7 +33,7 @@ class RasterReader {
 
   Size size() const;
   const GeoRef& ref() const;
-  const Source& source() const;  ///< evidence and nodata are complete after scan()
+  const Source& source() const;  ///< until scan(), its nodata is the declared one, without evidence
 
   /// Rows in order, each once: `begin` is called first, and again when the rows showed undeclared
   /// no-data and pass once more with it taken as unknown.
