@@ -192,6 +192,17 @@ def _write_whole(path, content):
             os.remove(beside)
 
 
+def _timed(task):
+    """A task that also tells the processor time of its own thread."""
+    @functools.wraps(task)
+    def timed(*arguments):
+        begin = time.thread_time()
+        result = task(*arguments)
+        return result, time.thread_time() - begin
+    return timed
+
+
+@_timed
 def scan_part(job, number, box):
     """Finds the holes of one part."""
     path = job.file("part", number)
@@ -199,6 +210,7 @@ def scan_part(job, number, box):
         _write_whole(path, _raster(job).scan(box))
 
 
+@_timed
 def fill_bundle(job, number, bundle):
     """Fills the holes of one bundle into its journal. A worker that was given up may still be at it, or a
     call that was stopped: then it is waited for."""
@@ -212,8 +224,10 @@ def fill_bundle(job, number, bundle):
         time.sleep(0.2)
 
 
+@_timed
 def write_tile(job, number, tile, bundles, out, done):
-    """Writes one tile; `done`: what fill_bundle gave for the bundles, whose tasks are thus done before."""
+    """Writes one tile; how many of its cells are unknown. `done`: what fill_bundle gave for the bundles,
+    whose tasks are thus done before."""
     marker = job.file("tile", number)
     if not (os.path.exists(marker) and os.path.exists(out)):
         metadata = [("DEM_METHOD", job.method), ("DEM_SETTINGS", " ".join("=".join(s) for s in job.settings)),
@@ -311,7 +325,8 @@ def _gather(futures, report, first, last, what):
             raise error
         if report:
             report(first + (last - first) * n / len(futures), what)
-    return [future.result() for future in futures]
+    results = [future.result() for future in futures]
+    return [result for result, _ in results], sum(seconds for _, seconds in results)
 
 
 def fill_mosaic(sources, out_dir, client=None, *, method=_core.default_method, nodata=None, inner_only=False,
@@ -336,7 +351,8 @@ def fill_mosaic(sources, out_dir, client=None, *, method=_core.default_method, n
     overwrite replace what is in out_dir
 
     The same call goes on where another was stopped; a finished run leaves tiles only. Returns a dict:
-    tiles, cells, unknown, voids, filled, left, windows, seconds of each step ...
+    tiles, cells, unknown, voids, filled, left, windows, seconds of each step, cpu_seconds of its tasks (of
+    their own threads, and of this run alone) ...
     Steps on Dask's dashboard: scan_part, fill_bundle, write_tile.
     """
     begin = time.monotonic()
@@ -366,7 +382,8 @@ def fill_mosaic(sources, out_dir, client=None, *, method=_core.default_method, n
     result = {"tiles": len(tiles), "cells": raster.size[0] * raster.size[1]}
     with callback(progress) as report, _client(client) as cluster, _Futures(cluster, retries) as tasks:
         seconds = [time.monotonic()]
-        bundles, told = _plan(job, raster, tiles, tasks, report, bundle_cells)
+        (bundles, told), scanned = _plan(job, raster, tiles, tasks, report, bundle_cells)
+        cpu = {"scan": scanned}
         result.update(told, bundles=len(bundles))
         seconds.append(time.monotonic())
         filling = [tasks.submit(fill_bundle, job, n, bundle) for n, (bundle, _, _) in enumerate(bundles)]
@@ -376,9 +393,9 @@ def fill_mosaic(sources, out_dir, client=None, *, method=_core.default_method, n
                 bundles_of[tile].append(n)
         writing = [tasks.submit(write_tile, job, t, tile, bundles_of[t], out, [filling[n] for n in bundles_of[t]])
                    for t, (tile, out) in enumerate(zip(tiles, outs))]
-        filled = _gather(filling, report, 0.2, 0.8, "filling holes")
+        filled, cpu["fill"] = _gather(filling, report, 0.2, 0.8, "filling holes")
         seconds.append(time.monotonic())
-        left = _gather(writing, report, 0.8, 1, "writing tiles")
+        left, cpu["write"] = _gather(writing, report, 0.8, 1, "writing tiles")
         seconds.append(time.monotonic())
     for name in "filled", "water", "over_aux", "windows", "resumed":
         result[name] = sum(outcome[name] for outcome in filled)
@@ -386,19 +403,20 @@ def fill_mosaic(sources, out_dir, client=None, *, method=_core.default_method, n
     result["unknown_in_tiles"] = sum(left)
     result["seconds"] = {name: b - a for name, a, b in zip(("scan", "fill", "write"), seconds, seconds[1:])}
     result["seconds"]["all"] = time.monotonic() - begin
+    result["cpu_seconds"] = cpu
     shutil.rmtree(folder)
     return result
 
 
 def _plan(job, raster, tiles, tasks, report, bundle_cells):
-    """Bundles with the tiles they touch, from disk when they were made before."""
+    """Bundles with the tiles they touch, and the processor time of scanning; from disk when made before."""
     path = os.path.join(job.folder, "plan")
     if os.path.exists(path):
-        return pickle.loads(pathlib.Path(path).read_bytes())
+        return pickle.loads(pathlib.Path(path).read_bytes()), 0.0
     boxes = _parts(tiles, raster.size)
     scanning = [tasks.submit(scan_part, job, n, box) for n, box in enumerate(boxes)]
     try:
-        _gather(scanning, report, 0, 0.19, "looking for holes")
+        _, cpu = _gather(scanning, report, 0, 0.19, "looking for holes")
     except OSError:  # GDAL names the mosaic; name the tile
         for future, box in zip(scanning, boxes):
             if future.status == "error":
@@ -409,7 +427,7 @@ def _plan(job, raster, tiles, tasks, report, bundle_cells):
     parts = [pathlib.Path(job.file("part", n)).read_bytes() for n in range(len(boxes))]
     plan = raster.plan(parts, [tile.box for tile in tiles], bundle_cells, report and functools.partial(_scaled, report))
     _write_whole(path, pickle.dumps(plan))
-    return plan
+    return plan, cpu
 
 
 def _overlap(a, b):
