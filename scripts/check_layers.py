@@ -23,7 +23,7 @@ LAYERS = {
 
 # An algorithm that is written in several private files. They belong to it alone.
 PARTS = {
-    "holes": ["hole_filter", "hole_scan", "hole_windows"],
+    "holes": ["hole_filter", "hole_parts", "hole_scan", "hole_windows"],
     "mcmd": ["lattice", "midpoint", "pyramid", "row_kernels", "waves"],
     "networks": ["growth", "ridges", "rivers"],
     "raytrace": ["heightfield", "sky", "view"],
@@ -63,6 +63,7 @@ LIBRARIES = {
     "OpenImageIO/": {"io"},
     "CLI/": {"apps"},
     "nlohmann/": {"apps"},
+    "pybind11/": {"apps"},
 }
 POSIX = re.compile(r"(sys/\w+|unistd|fcntl|signal|stdlib|termios)\.h")  # the operating system: io and apps; memory: values
 STANDARD = re.compile(r"\w+")

@@ -9,12 +9,14 @@ packages=(
   g++ cmake ninja-build pkg-config
   libgdal-dev libgeographiclib-dev libopenimageio-dev libtbb-dev libeigen3-dev libfmt-dev
   libcli11-dev nlohmann-json3-dev libjs-chart.js
+  python3-dev python3-numpy pybind11-dev
   ca-certificates
 )
 test_packages=(
   libgtest-dev libgmock-dev libbenchmark-dev libembree-dev
   clang-14 clang-format-14 libclang-rt-14-dev
-  python3 chromium
+  python3 python3-pytest python3-hypothesis python3-xarray python3-rioxarray python3-tqdm
+  python3-distributed chromium
 )
 
 case "${1:-}" in

@@ -1,15 +1,13 @@
 // dem evaluate: how good a reconstruction is.
 
-#include "dem/evaluate.h"
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <optional>
 
 #include "dem/geodesy.h"
 #include "report/evaluate_report.h"
+#include "scores.h"
 #include "verbs.h"
 
 namespace dem::app {
@@ -22,21 +20,6 @@ struct Options {
   std::vector<std::string> expect;
   ReadOptions read;
 };
-
-/// A number of Errors, as --expect and the tables name it.
-struct Measure {
-  const char* name;
-  const char* unit;
-  double Errors::*value;
-  const char* title;  // in a report
-};
-constexpr Measure kMeasures[] = {{"rmse", "m", &Errors::rmse_m, "RMSE"},
-                                 {"mae", "m", &Errors::mae_m, "mean of |error|"},
-                                 {"bias", "m", &Errors::bias_m, "bias"},
-                                 {"nmad", "m", &Errors::nmad_m, "NMAD"},
-                                 {"le90", "m", &Errors::le90_m, "LE90"},
-                                 {"max", "m", &Errors::max_m, "largest |error|"},
-                                 {"slope_rmse", "deg", &Errors::slope_rmse_deg, "RMSE of slope"}};
 
 /// "rmse<20".
 struct Expectation {
@@ -72,21 +55,6 @@ void check_size(const std::string& path, const Dem& dem, Size size) {
                                     dem.z.rows(), size.cols, size.rows));
 }
 
-Mask both(const Mask& a, const Mask& b) {
-  Mask m = a;
-  for (std::size_t i = 0; i < m.cells().size(); ++i) m.cells()[i] = a.cells()[i] && b.cells()[i];
-  return m;
-}
-
-struct Scores {
-  Errors all;
-  std::optional<Errors> filled;
-  std::size_t unfilled = 0;  // cells of the truth that GOT does not know
-  std::vector<SpectrumBin> truth, got;
-  std::optional<Calibration> calibration;
-  Json sections = Json::array();  // of the report
-};
-
 /// The standard deviations of a file, 0 where it has none.
 Raster<float> read_sigma(const Options& o, Size size, const Run& run) {
   const DemFile file = read_dem(o.sigma, {}, run);
@@ -94,61 +62,40 @@ Raster<float> read_sigma(const Options& o, Size size, const Run& run) {
   return completed(file.dem, Raster<float>(size));
 }
 
-Scores score(const Options& o, Stopwatch& watch, const Run& run) {
+/// Measures; and the sections of a report, when one is asked for.
+Scores scores_of(const Options& o, Json& sections, Stopwatch& watch, const Run& run) {
   const DemFile truth = read_dem(o.truth, o.read, run.part(0, 0.2));
   const DemFile got = read_dem(o.got, o.read, run.part(0.2, 0.4));
   const Size size = truth.dem.size();
   check_size(o.got, got.dem, size);
-  watch.lap("reading");
-  const Mask comparable = both(truth.dem.known, got.dem.known);
+  const Mask comparable = known_in_both(truth.dem, got.dem);
   if (count(comparable) == 0) throw IoError(o.got, "no cell is known both here and in TRUTH");
-
-  Scores scores;
-  scores.unfilled = count(truth.dem.known) - count(comparable);
-  const auto spacing = spacing_by_row(truth.dem.ref, size);
-  const Raster<float> truth_z = completed(truth.dem, got.dem.z),
-                      got_z = completed(got.dem, truth.dem.z);
-  scores.all = compare(truth_z, got_z, comparable, spacing, run.part(0.4, 0.6));
-  Mask where = comparable, known;
+  Mask known, filled;
   if (!o.known.empty()) {
-    const DemFile sampled = read_dem(o.known, o.read, run.part(0.6, 0.7));
+    DemFile sampled = read_dem(o.known, o.read, run.part(0.4, 0.5));
     check_size(o.known, sampled.dem, size);
-    known = sampled.dem.known;
-    for (std::size_t i = 0; i < where.cells().size(); ++i)
-      if (known.cells()[i]) where.cells()[i] = 0;
-    if (count(where) == 0) throw IoError(o.known, "every cell is known; no filled cell to score");
-    scores.filled = compare(truth_z, got_z, where, spacing, run.part(0.7, 0.75));
+    filled = without_known(comparable, sampled.dem);
+    known = std::move(sampled.dem.known);
+    if (count(filled) == 0) throw IoError(o.known, "every cell is known; no filled cell to score");
   }
   Raster<float> sigma;
-  if (!o.sigma.empty()) {
-    sigma = read_sigma(o, size, run.part(0.75, 0.8));
-    scores.calibration = calibration(truth_z, got_z, where, sigma);
-    if (scores.calibration->cells == 0)
-      throw IoError(o.sigma, "no scored cell has a standard deviation above 0");
-  }
-
-  // A spectrum needs whole surfaces, large enough to hold a few waves.
-  const bool whole = count(comparable) == size.cells() && size.cols >= 16 && size.rows >= 16;
-  if (whole) {
-    run.report(0.8, "spectrum");
-    scores.truth = power_spectrum(truth.dem.z, truth.dem.spacing);
-    scores.got = power_spectrum(got.dem.z, truth.dem.spacing);
-  }
+  if (!o.sigma.empty()) sigma = read_sigma(o, size, run.part(0.5, 0.6));
+  watch.lap("reading");
+  Scores scores = score(truth.dem, got.dem, comparable, filled, sigma, run.part(0.6, 0.85));
+  if (scores.calibration && scores.calibration->cells == 0)
+    throw IoError(o.sigma, "no scored cell has a standard deviation above 0");
   watch.lap("comparing");
   if (!o.report.empty()) {
-    scores.sections = error_sections(
-        {truth_z, got_z, comparable, where, scores.filled ? *scores.filled : scores.all, known,
-         sigma, spacing, truth.dem.spacing},
+    const Raster<float> truth_z = completed(truth.dem, got.dem.z),
+                        got_z = completed(got.dem, truth.dem.z);
+    sections = error_sections(
+        {truth_z, got_z, comparable, filled.empty() ? comparable : filled,
+         scores.filled ? *scores.filled : scores.all, known, sigma,
+         spacing_by_row(truth.dem.ref, size), truth.dem.spacing},
         scores.truth, scores.got, run.part(0.85, 1));
     watch.lap("drawing");
   }
   return scores;
-}
-
-Json as_json(const Errors& e) {
-  Json json{{"cells", e.cells}};
-  for (const auto& m : kMeasures) json[std::string(m.name) + "_" + m.unit] = e.*m.value;
-  return json;
 }
 
 std::string error_table(const Scores& s) {
@@ -188,7 +135,8 @@ std::string spectrum_table(const Scores& s) {
   return text;
 }
 
-void write_page(const Options& o, Scores s, const Stopwatch& watch, Shell& shell) {
+void write_page(const Options& o, const Scores& s, Json sections, const Stopwatch& watch,
+                Shell& shell) {
   const Errors& judged = s.filled ? *s.filled : s.all;
   const char* cells = s.filled ? "filled" : "compared";
   ReportPage page;
@@ -206,7 +154,7 @@ void write_page(const Options& o, Scores s, const Stopwatch& watch, Shell& shell
     if (s.filled) row.push_back(decimal((*s.filled).*m.value, 3));
     rows.push_back(std::move(row));
   }
-  page.sections = std::move(s.sections);
+  page.sections = std::move(sections);
   if (s.filled)
     page.sections.push_back(table_section("All cells and filled ones", "",
                                           {"", fmt::format("{} cells", grouped(s.all.cells)),
@@ -224,24 +172,13 @@ int evaluate(const Options& o, Shell& shell) {
   check_report(o.report, shell.overwrite);
   const Run run = shell.run();
   Stopwatch watch;
-  const Scores s = score(o, watch, run);
-  if (!o.report.empty()) write_page(o, s, watch, shell);
+  Json sections;
+  const Scores s = scores_of(o, sections, watch, run);
+  if (!o.report.empty()) write_page(o, s, std::move(sections), watch, shell);
   const Errors& judged = s.filled ? *s.filled : s.all;
 
-  Json json{{"all", as_json(s.all)},        {"filled", s.filled ? as_json(*s.filled) : Json()},
-            {"unfilled_cells", s.unfilled}, {"calibration", Json()},
-            {"spectrum", Json::array()},    {"expect", Json::array()}};
-  for (std::size_t i = 0; i < s.truth.size(); ++i)
-    json["spectrum"].push_back({{"wavelength_m", s.truth[i].wavelength_m},
-                                {"truth_m4", s.truth[i].power_m2},
-                                {"got_m4", s.got[i].power_m2},
-                                {"waves", s.truth[i].waves}});
-  if (const auto& c = s.calibration)
-    json["calibration"] = {{"cells", c->cells},
-                           {"within_1_sigma", c->within_1},
-                           {"within_2_sigma", c->within_2},
-                           {"within_3_sigma", c->within_3},
-                           {"rms_ratio", c->rms_ratio}};
+  Json json = as_json(s);
+  json["expect"] = Json::array();
   bool all_met = true;
   std::string verdicts;
   for (const auto& e : expectations) {

@@ -8,7 +8,7 @@
 
 #include "dem/drawing.h"
 #include "dem/generators.h"
-#include "dem/geodesy.h"
+#include "places.h"
 #include "verbs.h"
 
 namespace dem::app {
@@ -49,7 +49,7 @@ Spacing parse_cell(const std::string& text) {
   return {dx, dy};
 }
 
-/// The whole Earth in degrees, cells centred half a cell from the antimeridian and the poles.
+/// The whole Earth, which leaves nothing to choose but the size.
 Canvas globe(const Options& o, Size size) {
   for (const auto& [option, text] :
        {std::pair{"cell", o.cell}, {"crs", o.crs}, {"origin", o.origin}})
@@ -57,29 +57,17 @@ Canvas globe(const Options& o, Size size) {
       throw std::invalid_argument(
           fmt::format("{} = {}; {} makes the whole Earth in EPSG:4326, give --size alone", option,
                       text, o.name));
-  const double dlon = 360.0 / size.cols, dlat = 180.0 / size.rows;
-  Canvas canvas{
-      size, {}, {{-180 + dlon / 2, dlon, 0, 90 - dlat / 2, 0, -dlat}, crs_wkt("EPSG:4326")}};
-  canvas.spacing = middle_spacing(canvas.ref, size);
-  return canvas;
+  return globe_canvas(size);
 }
 
-/// Cells of so many metres from the north-west one on. In degrees (or feet), the cell is what spans
-/// so many metres there.
+/// A plane as asked for; cells of 30 m from 0,0 on by default.
 Canvas plane(const Options& o, Size size) {
-  Canvas canvas;
-  canvas.size = size;
-  canvas.spacing = parse_cell(o.cell.empty() ? "30" : o.cell);
   const auto must_be = "X,Y of the north-west cell in the CRS's units, e.g. 305000,4910000";
   if (!o.origin.empty() && o.origin.find(',') == std::string::npos)
     throw std::invalid_argument(fmt::format("origin = {}; must be {}", o.origin, must_be));
   const auto [x, y] =
       o.origin.empty() ? std::pair{0.0, 0.0} : parse_pair("origin", o.origin, ',', must_be);
-  canvas.ref = {{x, 1, 0, y, 0, -1}, crs_wkt(o.crs)};
-  const Spacing unit = middle_spacing(canvas.ref, {1, 1});
-  canvas.ref.to_world[1] = canvas.spacing.dx_m / unit.dx_m;
-  canvas.ref.to_world[5] = -canvas.spacing.dy_m / unit.dy_m;
-  return canvas;
+  return plane_canvas(size, parse_cell(o.cell.empty() ? "30" : o.cell), x, y, o.crs);
 }
 
 /// Grey levels of the image that the generator starts from; none when it takes none.

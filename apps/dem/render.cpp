@@ -3,12 +3,12 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <map>
 
 #include "dem/draw.h"
 #include "dem/image.h"
 #include "dem/raytrace.h"
+#include "places.h"
 #include "verbs.h"
 
 namespace dem::app {
@@ -62,39 +62,12 @@ Settings picture_size(const std::string& text) {
   return {{"width", text.substr(0, x)}, {"height", text.substr(x + 1)}};
 }
 
-/// "X,Y,Z" in the coordinates of the DEM and metres; "+200" for Z is 200 m above the ground there.
-Vec3 point(const std::string& option, const std::string& text, const Dem& dem) {
-  const auto must_be =
-      "X,Y,Z: the DEM's coordinates and an elevation in metres, or +METRES above ground";
-  const auto first = text.find(','), second = text.find(',', first + 1);
-  if (first == std::string::npos || second == std::string::npos)
-    throw std::invalid_argument(fmt::format("{} = {}; must be {}", option, text, must_be));
-  const double x = parse_number(option, text.substr(0, first), must_be);
-  const double y = parse_number(option, text.substr(first + 1, second - first - 1), must_be);
-  std::string height = text.substr(second + 1);
-  const bool above_ground = height.starts_with('+');
-  if (above_ground) height.erase(0, 1);
-  double z = parse_number(option, height, must_be);
-
-  const auto& w = dem.ref.to_world;
-  const double area = w[1] * w[5] - w[2] * w[4];
-  const double col = (w[5] * (x - w[0]) - w[2] * (y - w[3])) / area;
-  const double row = (w[1] * (y - w[3]) - w[4] * (x - w[0])) / area;
-  const Vec3 place{col * dem.spacing.dx_m, -row * dem.spacing.dy_m, z};
-  if (!above_ground) return place;
-  const auto ground = Heightfield(dem).height(place.x, place.y);
-  if (!ground)
-    throw std::invalid_argument(fmt::format(
-        "{} = {}; there is no known ground below, so Z must be an elevation", option, text));
-  return {place.x, place.y, *ground + z};
-}
-
 ViewOptions view_options(const Options& o, const Dem& dem, Settings settings) {
   for (auto& setting : picture_size(o.size)) settings.push_back(std::move(setting));
   ViewOptions view;
   dem::apply(settings, fields(view));
-  if (!o.camera.empty()) view.camera = point("camera", o.camera, dem);
-  if (!o.target.empty()) view.target = point("target", o.target, dem);
+  if (!o.camera.empty()) view.camera = place_in(dem, "camera", o.camera);
+  if (!o.target.empty()) view.target = place_in(dem, "target", o.target);
   return view;
 }
 

@@ -399,6 +399,44 @@ class Resume(HoleTest):
         self.succeeds("fill", "a.tif", "o.tif", "-m", "mcmd", "--resume")
         self.assertEqual(self.cells("o.tif"), self.cells("w.tif"))
 
+    def test_tasks_leave_shares_from_which_resume_writes_the_same_bytes(self):
+        self.pitted(side=400)
+        command = ["fill", "a.tif", "o.tif", "--memory", "400M"]
+        self.succeeds(*command, "--resume")
+        expected = self.read("o.tif")
+        os.remove(self.path("o.tif"))
+        reports = [self.json(*command, "--task", f"{i}/3") for i in (3, 1)]
+        self.assertFalse(os.path.exists(self.path("o.tif")))
+        journal = self.read(".o.tif.journal.3of3")
+        self.write(".o.tif.journal.3of3", journal[: len(journal) // 2])  # as after a kill
+        self.assertEqual(self.json(*command, "--task", "3/3")["filled"], reports[0]["filled"])
+        reports.append(self.json(*command, "--task", "2/3"))
+        cells = [r["filled"] for r in reports]
+        self.assertGreater(min(cells), max(cells) / 4)
+        run = self.succeeds(*command, "--resume")
+        self.assertIn(f"filled {sum(cells):,} of".replace(",", " "), run.stderr)
+        self.assertRegex(run.stderr, r"resumed: (\S+) of \1 windows were done")
+        self.assertEqual(self.read("o.tif"), expected)
+        self.assert_files("a.tif", "o.tif")
+
+    def test_resume_does_what_tasks_have_not_done(self):
+        self.pitted(side=300)
+        self.succeeds("fill", "a.tif", "w.tif")
+        self.succeeds("fill", "a.tif", "o.tif", "--task", "2/2")
+        self.assertIn("resumed", self.succeeds("fill", "a.tif", "o.tif", "--resume").stderr)
+        self.assertEqual(self.cells("o.tif"), self.cells("w.tif"))
+
+    def test_bad_tasks_are_refused(self):
+        self.pitted(side=64)
+        for task in "0/3", "4/3", "1.5/3", "2", "/", "1/200000":
+            self.fails(1, "fill", "a.tif", "o.tif", "--task", task, says=[f"task = {task}", "1 <= I <= N"])
+        self.fails(1, "fill", "a.tif", "o.tif", "--task", "1/2", "--resume", says=["no --resume"])
+        self.holed()
+        self.fails(2, "fill", "N10E010.hgt", "o.tif", "--task", "1/2", says=["N10E010.hgt", "GeoTIFF"])
+        self.succeeds("fill", "a.tif", "o.tif", "--task", "1/2")
+        self.fails(2, "fill", "a.tif", "o.tif", "--resume", "-m", "mcmd",
+                   says=[".o.tif.journal.1of2", "other settings", "remove it"])
+
 
 if __name__ == "__main__":
     main()

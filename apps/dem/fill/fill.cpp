@@ -2,7 +2,9 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdio>
 #include <optional>
+#include <tuple>
 
 #include "dem/baselines.h"
 #include "fill/hole_fill.h"
@@ -28,6 +30,7 @@ struct Options {
   std::string origin, table, memory, water, report;
   std::vector<std::string> aux;
   bool resume = false;
+  int task = 0, tasks = 0;  // --task; 0: not given
   bool whole = false;
   HoleChoice choice;
   ReadOptions read;
@@ -103,39 +106,11 @@ void report(const Options& o, const ChosenMethod& chosen, const FillOutcome& out
         grouped(out.holes.size()), grouped(out.border_cells), left, o.method, grouped(out.windows),
         out.windows == 1 ? "" : "s", out.seconds, known_cells(o, out, type), o.out);
   }
-  Json aux = Json::array();
-  for (const auto& fit : out.aux) {
+  for (const auto& fit : out.aux)
     if (!fit.warning.empty()) shell.say("warning: {} {}", fit.path, fit.warning);
-    aux.push_back({{"path", fit.path},
-                   {"offset_m", fit.offset_m},
-                   {"shift_cells", {fit.shift_cols, fit.shift_rows}},
-                   {"warning", fit.warning}});
-  }
-  Json figures = Json::array();
-  for (const auto& f : out.figures)
-    figures.push_back({{"name", f.name}, {"value", f.value}, {"unit", f.unit}});
-  Json settings = Json::object();
-  for (const auto& [key, value] : chosen.settings) settings[key] = value;
-  shell.print({{"output", o.out},
-               {"method", o.method},
-               {"settings", settings},
-               {"unknown", out.unknown},
-               {"voids", out.holes.size()},
-               {"border_voids", out.border_holes},
-               {"border_void_cells", out.border_cells},
-               {"windows", out.windows},
-               {"filled", out.filled},
-               {"water", out.water_cells},
-               {"over_aux", out.guide_cells},
-               {"aux", aux},
-               {"left_at_border", out.left_at_border},
-               {"left_by_choice", out.left_by_choice},
-               {"left", out.left},
-               {"known_unchanged", out.known_kept},
-               {"known_checksum", fmt::format("{:016x}", out.known_checksum)},
-               {"seconds", out.seconds},
-               {"report", figures}},
-              "");
+  Json json{{"output", o.out}};
+  json.update(as_json(out, o.method, chosen.settings));
+  shell.print(json, "");
 }
 
 const std::vector<CellClass> kOrigins{{0, "measured", {160, 160, 160}},
@@ -208,11 +183,28 @@ int exit_code(const FillOutcome& out) {
   return out.left > 0 ? kUnfilled : kDone;
 }
 
+/// A task leaves its cells in its journal; another run writes the output.
+int report_task(const Options& o, const FillOutcome& out, Shell& shell) {
+  shell.say(
+      "task {} of {}: filled {} cells in {} window{}, {:.3f} s; when all tasks are done, the same "
+      "command with --resume for --task writes {}",
+      o.task, o.tasks, grouped(out.filled), grouped(out.windows), out.windows == 1 ? "" : "s",
+      out.seconds, o.out);
+  shell.print({{"output", o.out},
+               {"task", o.task},
+               {"tasks", o.tasks},
+               {"windows", out.windows},
+               {"filled", out.filled},
+               {"seconds", out.seconds}},
+              "");
+  return kDone;
+}
+
 /// Strip by strip, within a bound of memory.
 int fill_stream(const Options& o, const FillRequest& request, std::size_t memory, Shell& shell) {
   const Run run = shell.run();
   Stopwatch watch;
-  StreamFill::Options options{o.in, o.out, o.read, memory, o.resume, ""};
+  StreamFill::Options options{o.in, o.out, o.read, memory, o.task, o.tasks, o.resume, ""};
   for (const auto& part : {o.method, settings_text(request.method.settings), o.choice.text(),
                            o.sigma, o.table, std::string(o.whole ? "whole" : ""), o.memory, o.water,
                            fmt::format("{}", fmt::join(o.aux, " "))})
@@ -222,6 +214,7 @@ int fill_stream(const Options& o, const FillRequest& request, std::size_t memory
   if (job.resumed_windows() > 0)
     shell.say("resumed: {} of {} windows were done", grouped(job.resumed_windows()),
               grouped(out.windows));
+  if (o.tasks) return report_task(o, out, shell);
 
   watch.lap("finding holes and filling");
   Json sections;
@@ -252,10 +245,23 @@ int fill_stream(const Options& o, const FillRequest& request, std::size_t memory
 /// The bytes that may be used when the raster is to be worked on part by part; 0: as a whole.
 std::size_t stream_memory(const Options& o) {
   if (!o.memory.empty()) return parse_memory("memory", o.memory);
-  return o.resume ? machine_memory() / 2 : 0;
+  return o.resume || o.tasks ? machine_memory() / 2 : 0;
+}
+
+/// "3/8".
+std::pair<int, int> parse_task(const std::string& text) {
+  int task = 0, tasks = 0, used = 0;
+  if (std::sscanf(text.c_str(), "%6d/%6d%n", &task, &tasks, &used) != 2 ||
+      std::size_t(used) != text.size() || task < 1 || tasks < task || tasks > 100000)
+    throw std::invalid_argument(fmt::format(
+        "task = {}; must be I/N, two whole numbers with 1 <= I <= N <= 100000, e.g. 3/8", text));
+  return {task, tasks};
 }
 
 int fill(const Options& o, Shell& shell) {
+  if (o.tasks && o.resume)
+    throw std::invalid_argument(
+        "--task goes on by itself where it was stopped: no --resume beside it");
   const ChosenMethod chosen = choose(o);
   check(o.choice);
   const std::size_t memory = stream_memory(o);
@@ -402,6 +408,11 @@ void add_fill(CLI::App& app, Shell& shell) {
       ->type_name("SIZE");
   verb->add_flag("--resume", o->resume,
                  "keep a journal; the same command goes on where it was stopped");
+  verb->add_option_function<std::string>(
+          "--task",
+          [o](const std::string& text) { std::tie(o->task, o->tasks) = parse_task(text); },
+          "fill the I-th of N shares into a journal; when all are done, --resume writes OUT")
+      ->type_name("I/N");
   o->choice.add_options(*verb);
   add_read_options(*verb, o->read);
   add_write_options(*verb, o->write);

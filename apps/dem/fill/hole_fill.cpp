@@ -136,6 +136,36 @@ FillOutcome fill_holes_of(Dem& dem, const FillRequest& request, const Run& run) 
   return out;
 }
 
+Json as_json(const FillOutcome& out, const std::string& method, const Settings& chosen) {
+  Json aux = Json::array(), figures = Json::array(), settings = Json::object();
+  for (const auto& fit : out.aux)
+    aux.push_back({{"path", fit.path},
+                   {"offset_m", fit.offset_m},
+                   {"shift_cells", {fit.shift_cols, fit.shift_rows}},
+                   {"warning", fit.warning}});
+  for (const auto& f : out.figures)
+    figures.push_back({{"name", f.name}, {"value", f.value}, {"unit", f.unit}});
+  for (const auto& [key, value] : chosen) settings[key] = value;
+  return {{"method", method},
+          {"settings", settings},
+          {"unknown", out.unknown},
+          {"voids", out.holes.size()},
+          {"border_voids", out.border_holes},
+          {"border_void_cells", out.border_cells},
+          {"windows", out.windows},
+          {"filled", out.filled},
+          {"water", out.water_cells},
+          {"over_aux", out.guide_cells},
+          {"aux", aux},
+          {"left_at_border", out.left_at_border},
+          {"left_by_choice", out.left_by_choice},
+          {"left", out.left},
+          {"known_unchanged", out.known_kept},
+          {"known_checksum", fmt::format("{:016x}", out.known_checksum)},
+          {"seconds", out.seconds},
+          {"report", figures}};
+}
+
 Json hole_table(const FillOutcome& outcome, const std::string& method) {
   const auto number = [](double v) { return std::isfinite(v) ? Json(v) : Json(); };
   Json table = Json::array();

@@ -75,6 +75,9 @@ struct FilledPart {
   Raster<float> sigma{};        ///< empty: not asked for
 };
 
+/// What was done, as `dem fill --json` prints it, and `libdem.fill` reports it.
+Json as_json(const FillOutcome& outcome, const std::string& method, const Settings& settings);
+
 /// The table of holes as JSON.
 Json hole_table(const FillOutcome& outcome, const std::string& method);
 

@@ -10,6 +10,7 @@
 #include <span>
 
 #include "dem/io.h"
+#include "fill/bytes.h"
 
 namespace dem::app {
 namespace {
@@ -35,35 +36,6 @@ std::uint64_t checksum(std::string_view bytes, std::uint64_t start) {
     sum = (sum ^ static_cast<unsigned char>(bytes[i])) * 0x100000001b3ULL;
   return sum;
 }
-
-/// Plain values in the order of this machine: a journal does not travel.
-template <class T>
-void put(std::string& out, const std::vector<T>& values) {
-  const std::uint64_t n = values.size();
-  out.append(reinterpret_cast<const char*>(&n), sizeof n);
-  out.append(reinterpret_cast<const char*>(values.data()), n * sizeof(T));
-}
-
-class Taker {
- public:
-  explicit Taker(std::string_view bytes) : bytes_(bytes) {}
-  template <class T>
-  void take(std::vector<T>& values) {
-    std::uint64_t n = 0;
-    copy(&n, sizeof n);
-    if (n > bytes_.size() / sizeof(T)) throw std::runtime_error("journal record cut short");
-    values.resize(n);
-    copy(values.data(), n * sizeof(T));
-  }
-
- private:
-  void copy(void* to, std::size_t n) {
-    if (n > bytes_.size()) throw std::runtime_error("journal record cut short");
-    if (n > 0) std::memcpy(to, bytes_.data(), n);
-    bytes_.remove_prefix(n);
-  }
-  std::string_view bytes_;
-};
 
 std::string bytes_of(const StripPiece& piece) {
   std::string out;
@@ -113,19 +85,19 @@ HolePatch patch_of(std::string_view bytes, std::size_t window) {
 
 }  // namespace
 
-Journal::Journal(const std::string& path, const std::string& key)
-    : path_(path), file_(std::fopen(path.c_str(), "a+b")) {
+Journal::Journal(const std::string& path, const std::string& key, Access access)
+    : path_(path), file_(std::fopen(path.c_str(), access == Access::read ? "rb" : "a+b")) {
   if (!file_) fail();
-  if (flock(fileno(file_.get()), LOCK_EX | LOCK_NB) != 0)
+  if (flock(fileno(file_.get()), (access == Access::read ? LOCK_SH : LOCK_EX) | LOCK_NB) != 0)
     throw IoError(path, "journal: another run is working with it");
-  load(key);
+  load(key, access);
 }
 
 void Journal::fail() const {
   throw IoError(path_, std::string("journal: ") + std::strerror(errno));
 }
 
-void Journal::load(const std::string& key) {
+void Journal::load(const std::string& key, Access access) {
   std::FILE* const file = file_.get();
   std::fseek(file, 0, SEEK_END);
   const long size = std::ftell(file);
@@ -152,6 +124,11 @@ void Journal::load(const std::string& key) {
       close_window(patch_of(bytes, head.number));
     }
     whole = at;
+  }
+  if (access == Access::read) {
+    if (whole == 0)
+      throw IoError(path_, "journal: is that of another input or other settings; remove it");
+    return;
   }
   if (ftruncate(fileno(file), whole) != 0) fail();
   std::fseek(file, 0, SEEK_END);
@@ -219,6 +196,27 @@ std::vector<StripPiece> Journal::strip(int number) {
     pieces.push_back(piece_of(bytes));
   }
   return pieces;
+}
+
+void overlay(const std::vector<StripPiece>& pieces, Layer layer, const Box& box, Dem& rows) {
+  for (const StripPiece& piece : pieces) {
+    std::size_t cell = 0;
+    for (const CellRun& run : piece.runs) {
+      const std::size_t first = cell;
+      cell += std::size_t(run.end - run.begin);
+      if (run.row < box.row || run.row >= box.row + box.rows) continue;
+      const int end = std::min(run.end, box.col + box.cols);
+      for (int col = std::max(run.begin, box.col); col < end; ++col) {
+        const std::size_t i = first + std::size_t(col - run.begin);
+        float& z = rows.z(col - box.col, run.row - box.row);
+        if (layer == Layer::origin) z = float(piece.origin[i]);
+        if (piece.origin[i] == CellOrigin::left) continue;
+        if (layer == Layer::heights) z = piece.z[i];
+        if (layer == Layer::sigma && !piece.sigma.empty()) z = piece.sigma[i];
+        rows.known(col - box.col, run.row - box.row) = 1;
+      }
+    }
+  }
 }
 
 }  // namespace dem::app

@@ -19,14 +19,21 @@ struct StripPiece {
   std::vector<CellOrigin> origin;
 };
 
+enum class Layer { heights, sigma, origin };
+
+/// Puts the pieces' cells of one layer into `rows`, the cells of `box` of the raster.
+void overlay(const std::vector<StripPiece>& pieces, Layer layer, const Box& box, Dem& rows);
+
 class Journal {
  public:
   static constexpr int strip_rows = 256;
+  enum class Access { write, read };
 
   /// Opens the file at `path`. What is in it is kept when it was begun with the same `key` (input,
   /// method, options ...) and is whole up to some point; the rest is cut off.
+  /// To read, it must be there and have the key.
   /// Throws IoError.
-  Journal(const std::string& path, const std::string& key);
+  Journal(const std::string& path, const std::string& key, Access access = Access::write);
 
   /// Whether a window is in it.
   bool has(std::size_t window) const { return window < done_.size() && done_[window]; }
@@ -50,7 +57,7 @@ class Journal {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
 
-  void load(const std::string& key);
+  void load(const std::string& key, Access access);
   void append(std::uint32_t kind, std::uint32_t number, const std::string& bytes);
   void index_piece(std::uint32_t strip, Place place);
   void close_window(HolePatch&& patch);

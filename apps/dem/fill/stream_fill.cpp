@@ -6,9 +6,11 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 
 #include "dem/geodesy.h"
 #include "dem/polygons.h"
+#include "fill/tasks.h"
 
 namespace dem::app {
 namespace fs = std::filesystem;
@@ -16,19 +18,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t mega = std::size_t{1} << 20;
-constexpr std::size_t program_bytes = 96 * mega;  // code, libraries, small things
-
-/// Bytes that a method takes for each cell of a window, its input and result included.
-std::size_t bytes_a_cell(const FillRequest& request) {
-  const std::string& name = request.method.method->name;
-  const std::size_t method = name == "spline"                                  ? 110
-                             : name == "mcmd" || name == "md" || name == "mdi" ? 24
-                                                                               : 64;
-  return method + (request.keep_sigma ? 30 : 0) + (request.rim_errors ? 10 : 0) +
-         request.aux.size() * 30 + (request.water.empty() ? 0 : 4);
-}
-
-std::size_t block_cache(std::size_t memory) { return std::min(memory / 6, 256 * mega); }
 
 /// Rows that are written at once.
 int rows_at_once(int cols) {
@@ -44,12 +33,23 @@ std::string journal_key(const StreamFill::Options& o) {
                      error ? 0 : time.time_since_epoch().count(), o.settings);
 }
 
+}  // namespace
+
+std::size_t bytes_a_cell(const FillRequest& request) {
+  const std::string& name = request.method.method->name;
+  const std::size_t method = name == "spline"                                  ? 110
+                             : name == "mcmd" || name == "md" || name == "mdi" ? 24
+                                                                               : 64;
+  return method + (request.keep_sigma ? 30 : 0) + (request.rim_errors ? 10 : 0) +
+         request.aux.size() * 30 + (request.water.empty() ? 0 : 4);
+}
+
+std::size_t block_cache(std::size_t memory) { return std::min(memory / 6, 256 * mega); }
+
 std::string text_of_bytes(std::size_t bytes) {
   return bytes >= 1024 * mega ? fmt::format("{:.1f}G", double(bytes) / (1024. * mega))
                               : fmt::format("{}M", (bytes + mega - 1) / mega);
 }
-
-}  // namespace
 
 std::size_t parse_memory(std::string_view option, const std::string& text) {
   constexpr auto must_be = "a size above 0, e.g. 2G, 500M";
@@ -141,23 +141,23 @@ void StreamFill::fill(const FillRequest& request, const Run& run) {
   });
   outcome_.windows = plan_.windows.size();
 
-  fs::path out(options_.out);
-  if (!out.has_filename()) out = out.parent_path();  // a folder, "tiles/"
-  const std::string hidden =
-      (out.parent_path() / fmt::format(".{}", out.filename().string())).string();
-  journal_path_ = hidden + (options_.resume ? ".journal" : fmt::format(".{}", getpid()));
-  journal_ = std::make_unique<Journal>(journal_path_, journal_key(options_));
-  if (!options_.resume) fs::remove(journal_path_);  // it lives as long as it is open
-
-  for (const HolePatch& entry : journal_->entries()) account(entry, plan_, outcome_);
-  resumed_ = journal_->windows();
+  open_journals();
+  for (const auto& journal : journals_)
+    for (const HolePatch& entry : journal->entries()) account(entry, plan_, outcome_);
+  const auto [first, last] = options_.tasks
+                                 ? windows_of_task(plan_.windows, std::size_t(options_.task) - 1,
+                                                   std::size_t(options_.tasks))
+                                 : std::pair{std::size_t{0}, plan_.windows.size()};
   std::vector<HoleWindow> windows;
   std::vector<std::size_t> numbers;
-  for (std::size_t w = 0; w < plan_.windows.size(); ++w)
-    if (!journal_->has(w)) {
+  for (std::size_t w = first; w < last; ++w)
+    if (is_done(w)) {
+      ++resumed_;
+    } else {
       windows.push_back(plan_.windows[w]);
       numbers.push_back(w);
     }
+  if (options_.tasks) outcome_.windows = last - first;
 
   FillLayers layers(request.aux, request.water, reader_.ref());
   HoleWork work;
@@ -176,35 +176,13 @@ void StreamFill::fill(const FillRequest& request, const Run& run) {
   work.take = [&](HolePatch&& patch) {
     patch.window = numbers[patch.window];
     account(patch, plan_, outcome_);
-    journal_->add(patch);
+    journals_[0]->add(patch);
   };
   const auto start = std::chrono::steady_clock::now();
   fill_windows(outcome_.holes, windows, work, run);
   outcome_.aux = layers.fits();
   outcome_.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-void StreamFill::overlay(const std::vector<StripPiece>& pieces, Layer layer, const Box& box,
-                         Dem& rows) const {
-  for (const StripPiece& piece : pieces) {
-    std::size_t cell = 0;
-    for (const CellRun& run : piece.runs) {
-      const std::size_t first = cell;
-      cell += std::size_t(run.end - run.begin);
-      if (run.row < box.row || run.row >= box.row + box.rows) continue;
-      for (int col = run.begin; col < run.end; ++col) {
-        const std::size_t i = first + std::size_t(col - run.begin);
-        if (col < box.col || col >= box.col + box.cols) continue;
-        float& z = rows.z(col - box.col, run.row - box.row);
-        if (layer == Layer::origin) z = float(piece.origin[i]);
-        if (piece.origin[i] == CellOrigin::left) continue;
-        if (layer == Layer::heights) z = piece.z[i];
-        if (layer == Layer::sigma && !piece.sigma.empty()) z = piece.sigma[i];
-        rows.known(col - box.col, run.row - box.row) = 1;
-      }
-    }
-  }
 }
 
 void StreamFill::write(const std::string& path, Layer layer, const Source& source,
@@ -215,7 +193,11 @@ void StreamFill::write(const std::string& path, Layer layer, const Source& sourc
   std::vector<StripPiece> pieces;
   for (int row = 0; row < size.rows;) {
     run.report(0.8 * row / size.rows, "writing");
-    if (row % Journal::strip_rows == 0) pieces = journal_->strip(row / Journal::strip_rows);
+    if (row % Journal::strip_rows == 0) {
+      pieces.clear();
+      for (const auto& journal : journals_)
+        std::ranges::move(journal->strip(row / Journal::strip_rows), std::back_inserter(pieces));
+    }
     const int next_strip = (row / Journal::strip_rows + 1) * Journal::strip_rows;
     const Box box{0, row, size.cols,
                   std::min({rows_at_once(size.cols), next_strip - row, size.rows - row})};
@@ -247,10 +229,12 @@ FilledPart StreamFill::read(const Box& box) {
         float(part.dem.known.cells()[i] ? CellOrigin::measured : CellOrigin::left);
   const int last = (box.row + box.rows - 1) / Journal::strip_rows;
   for (int strip = box.row / Journal::strip_rows; strip <= last; ++strip) {
-    const auto pieces = journal_->strip(strip);
-    overlay(pieces, Layer::heights, box, part.dem);
-    overlay(pieces, Layer::origin, box, origin);
-    overlay(pieces, Layer::sigma, box, sigma);
+    for (const auto& journal : journals_) {
+      const auto pieces = journal->strip(strip);
+      overlay(pieces, Layer::heights, box, part.dem);
+      overlay(pieces, Layer::origin, box, origin);
+      overlay(pieces, Layer::sigma, box, sigma);
+    }
   }
   std::ranges::transform(origin.z.cells(), part.origin.cells().begin(),
                          [](float kind) { return std::uint8_t(kind); });
@@ -258,10 +242,42 @@ FilledPart StreamFill::read(const Box& box) {
   return part;
 }
 
+/// Its own journal, a hidden file beside the output: ".out.tif.journal", or ".out.tif.journal.2of8" of
+/// a task. Without --resume it lives as long as it is open.
+void StreamFill::open_journals() {
+  fs::path out(options_.out);
+  if (!out.has_filename()) out = out.parent_path();  // a folder, "tiles/"
+  const fs::path folder = out.has_parent_path() ? out.parent_path() : fs::path(".");
+  const std::string name = fmt::format(".{}.journal", out.filename().string());
+  const std::string own =
+      options_.tasks    ? fmt::format("{}.{}of{}", name, options_.task, options_.tasks)
+      : options_.resume ? name
+                        : fmt::format(".{}.{}", out.filename().string(), getpid());
+  // Windows go by their numbers, so all must have left the same ones out for their size.
+  std::size_t cells = 0;
+  for (const HoleWindow& window : plan_.windows) cells += window.box.cells();
+  const std::string key = fmt::format("{} | {} windows of {} cells", journal_key(options_),
+                                      plan_.windows.size(), cells);
+  journal_paths_ = {(folder / own).string()};
+  journals_.push_back(std::make_unique<Journal>(journal_paths_[0], key));
+  if (!options_.tasks && !options_.resume) fs::remove(journal_paths_[0]);
+  if (options_.tasks || !options_.resume) return;
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (entry.path().filename().string().starts_with(name + "."))
+      journal_paths_.push_back(entry.path().string());
+  std::ranges::sort(journal_paths_.begin() + 1, journal_paths_.end());
+  for (std::size_t i = 1; i < journal_paths_.size(); ++i)
+    journals_.push_back(std::make_unique<Journal>(journal_paths_[i], key, Journal::Access::read));
+}
+
+bool StreamFill::is_done(std::size_t window) const {
+  return std::ranges::any_of(journals_, [&](const auto& journal) { return journal->has(window); });
+}
+
 void StreamFill::finish() {
-  journal_.reset();
+  journals_.clear();
   std::error_code none;
-  fs::remove(journal_path_, none);
+  for (const std::string& path : journal_paths_) fs::remove(path, none);
 }
 
 }  // namespace dem::app

@@ -6,6 +6,7 @@
 
 #include "dem/breakdown.h"
 #include "report/pictures.h"
+#include "scores.h"
 
 namespace dem::app {
 namespace {
@@ -164,26 +165,6 @@ Json calibration_section(const Compared& c, const Raster<float>& error) {
 }
 
 }  // namespace
-
-Calibration calibration(const Raster<float>& truth, const Raster<float>& got, const Mask& judged,
-                        const Raster<float>& sigma) {
-  Calibration all;
-  double squares = 0;
-  for (std::size_t i = 0; i < truth.cells().size(); ++i) {
-    if (!judged.cells()[i] || !(sigma.cells()[i] > 0)) continue;
-    const double ratio =
-        std::abs(double(got.cells()[i]) - double(truth.cells()[i])) / double(sigma.cells()[i]);
-    ++all.cells;
-    all.within_1 += ratio <= 1;
-    all.within_2 += ratio <= 2;
-    all.within_3 += ratio <= 3;
-    squares += ratio * ratio;
-  }
-  const auto n = double(std::max<std::size_t>(all.cells, 1));
-  all.within_1 /= n, all.within_2 /= n, all.within_3 /= n;
-  all.rms_ratio = std::sqrt(squares / n);
-  return all;
-}
 
 Json error_sections(const Compared& c, const std::vector<SpectrumBin>& truth,
                     const std::vector<SpectrumBin>& got, const Run& run) {

@@ -23,15 +23,6 @@ struct Compared {
   Spacing middle;
 };
 
-/// How well a standard deviation foretold the errors, over cells where it is above 0.
-struct Calibration {
-  std::size_t cells = 0;
-  double within_1 = 0, within_2 = 0, within_3 = 0;  ///< part of |e| <= 1, 2, 3 sigma
-  double rms_ratio = 0;                             ///< root mean square of e / sigma
-};
-Calibration calibration(const Raster<float>& truth, const Raster<float>& got, const Mask& judged,
-                        const Raster<float>& sigma);
-
 /// Pictures and charts of the errors, and the spectra of both (which may be empty).
 Json error_sections(const Compared& c, const std::vector<SpectrumBin>& truth,
                     const std::vector<SpectrumBin>& got, const Run& run);

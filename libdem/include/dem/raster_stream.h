@@ -30,7 +30,7 @@ class RasterReader {
 
   Size size() const;
   const GeoRef& ref() const;
-  const Source& source() const;    ///< evidence and nodata are complete after scan()
+  const Source& source() const;  ///< until scan(), its nodata is the declared one, without evidence
   std::size_t held_bytes() const;  ///< memory of a file that is not read part by part
 
   /// Rows in order, each once: `begin` is called first, and again when the rows showed undeclared

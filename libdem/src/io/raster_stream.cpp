@@ -116,6 +116,7 @@ RasterReader::RasterReader(const std::string& path, const ReadOptions& options) 
   Source& source = file_->open.source;
   if (file_->open.in_other_units() && source.type != CellType::float64)
     source.type = CellType::float32;
+  source.nodata = file_->search().value();
 }
 RasterReader::~RasterReader() = default;
 

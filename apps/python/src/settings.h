@@ -1,0 +1,26 @@
+#pragma once
+// Methods with their settings, as Python gives them.
+
+#include <string>
+
+#include "dem/baselines.h"
+#include "dem/generators.h"
+
+namespace dem::python {
+
+/// A fill method by its name, with settings after its preset's. Bad ones throw
+/// std::invalid_argument here, before long work.
+inline ChosenMethod choose_method(const std::string& name, const Settings& settings) {
+  ChosenMethod chosen = find_method(all_fill_methods(), name);
+  chosen.settings.insert(chosen.settings.end(), settings.begin(), settings.end());
+  chosen.method->fill({Raster<float>({1, 1}), Mask({1, 1}, 1), {}, {}}, chosen.settings, {});
+  return chosen;
+}
+
+/// Whether the method, so set, gives a standard deviation.
+inline bool gives_sigma(const ChosenMethod& chosen) {
+  const Dem one{Raster<float>({1, 1}), Mask({1, 1}, 1), {}, {}};
+  return !chosen.method->fill(one, chosen.settings, {}).sigma.empty();
+}
+
+}  // namespace dem::python
