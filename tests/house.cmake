@@ -22,6 +22,7 @@ if(DEM_BUILD_IO AND NOT DEM_SANITIZE)
            COMMAND ${CMAKE_COMMAND} -DBUILD=${PROJECT_BINARY_DIR}
                    -DWORK=${CMAKE_CURRENT_BINARY_DIR}/consumer
                    -DCONSUMER=${CMAKE_CURRENT_SOURCE_DIR}/consumer -DIO=ON
+                   -DLIBDIR=${CMAKE_INSTALL_LIBDIR}
                    -P ${CMAKE_CURRENT_SOURCE_DIR}/consumer/run.cmake)
   list(APPEND house_tests house.consumer)
 endif()
