@@ -15,6 +15,7 @@ test_packages=(
   libgtest-dev libgmock-dev libbenchmark-dev libembree-dev
   clang-14 clang-format-14 libclang-rt-14-dev
   python3
+  man-db zsh fish
 )
 
 case "${1:-}" in

@@ -189,11 +189,16 @@ void add_evaluate(CLI::App& app, Shell& shell) {
                "  dem evaluate whole.tif filled.tif --known sparse.tif   # the filled cells alone\n"
                "  dem evaluate whole.tif filled.tif --expect 'rmse<20' --expect 'bias<=1'",
                [o, &shell] { return evaluate(*o, shell); });
-  verb->add_option("TRUTH", o->truth, "the DEM as it should be")->required()->type_name("");
+  verb->add_option("TRUTH", o->truth, "the DEM as it should be")
+      ->required()
+      ->check(takes("raster"))
+      ->type_name("");
   verb->add_option("GOT", o->got, "the reconstruction, of the same size")
       ->required()
+      ->check(takes("raster"))
       ->type_name("");
   verb->add_option("-k,--known", o->known, "what GOT was made from: scores its unknown cells too")
+      ->check(takes("raster"))
       ->type_name("SAMPLED");
   verb->add_option("-e,--expect", o->expect,
                    "exit 4 unless it holds; of the filled cells if --known")
