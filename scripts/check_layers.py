@@ -17,8 +17,8 @@ LAYERS = {
                    "noise", "outliers", "points", "raytrace", "riverland", "sample", "sketch", "spline"],
     "methods": ["find_row", "generators", "greedy", "gridding", "methods", "supersample"],
     "io": ["aligned_reader", "baselines", "cells", "crs", "drawing", "gdal_raster", "gdal_support", "geodesy", "heightmap",
-           "hgt", "image", "io", "las", "lattices", "nodata", "ogr_layers", "oiio_support", "point_files", "point_reading",
-           "point_text", "point_vectors", "polygons", "raster_stream", "raster_writer", "staged_file", "tile_folder"],
+           "hgt", "image", "io", "las", "lattices", "libdem", "nodata", "ogr_layers", "oiio_support", "point_files",
+           "point_reading", "point_text", "point_vectors", "polygons", "raster_stream", "raster_writer", "staged_file", "tile_folder"],
 }
 
 # An algorithm that is written in several private files. They belong to it alone.
@@ -66,7 +66,7 @@ LIBRARIES = {
     "pybind11/": {"apps"},
 }
 POSIX = re.compile(r"(sys/\w+|unistd|fcntl|signal|stdlib|termios)\.h")  # the operating system: io and apps; memory: values
-STANDARD = re.compile(r"\w+")
+STANDARD = re.compile(r"\w+|std(def|int)\.h")  # the latter for C, in libdem.h
 
 OWNER = {part: owner for owner, parts in PARTS.items() for part in parts}
 LAYER_OF = {name: layer for layer, names in LAYERS.items() for name in names} | dict.fromkeys(OWNER, "algorithms")

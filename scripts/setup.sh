@@ -17,6 +17,7 @@ test_packages=(
   clang-14 clang-format-14 libclang-rt-14-dev
   python3 python3-pytest python3-hypothesis python3-xarray python3-rioxarray python3-tqdm
   python3-distributed chromium
+  man-db zsh fish
 )
 
 case "${1:-}" in

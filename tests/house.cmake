@@ -22,7 +22,13 @@ if(DEM_BUILD_IO AND NOT DEM_SANITIZE)
            COMMAND ${CMAKE_COMMAND} -DBUILD=${PROJECT_BINARY_DIR}
                    -DWORK=${CMAKE_CURRENT_BINARY_DIR}/consumer
                    -DCONSUMER=${CMAKE_CURRENT_SOURCE_DIR}/consumer -DIO=ON
+                   -DLIBDIR=${CMAKE_INSTALL_LIBDIR}
                    -P ${CMAKE_CURRENT_SOURCE_DIR}/consumer/run.cmake)
   list(APPEND house_tests house.consumer)
+  if(DEM_BUILD_APPS)
+    add_test(NAME house.package COMMAND Python3::Interpreter
+             ${CMAKE_CURRENT_SOURCE_DIR}/package.py ${PROJECT_BINARY_DIR})
+    list(APPEND house_tests house.package)
+  endif()
 endif()
 set_tests_properties(${house_tests} PROPERTIES LABELS house TIMEOUT 600)

@@ -138,6 +138,7 @@ void add_check(CLI::App& app, Shell& shell) {
                         [options, &shell] { return check_tiles(*options, shell); });
   verb->add_option("DIR", options->folder, "a folder of .hgt or .tif tiles that share their edges")
       ->required()
+      ->check(takes("folder"))
       ->type_name("");
   add_read_options(*verb, options->read);
 }

@@ -36,7 +36,7 @@ void Shell::add_options(CLI::App& app) {
   app.add_flag("-q,--quiet", quiet, "no messages, no progress; errors only")->group("Everywhere");
   app.add_option("--progress", progress,
                  "bar, json (lines on stderr), none; auto: a bar on a terminal")
-      ->check(CLI::IsMember({"auto", "bar", "json", "none"}, CLI::ignore_case).description(""))
+      ->check(one_of({"auto", "bar", "json", "none"}))
       ->type_name("HOW")
       ->capture_default_str()
       ->group("Everywhere");
@@ -86,6 +86,7 @@ void add_read_options(CLI::App& app, ReadOptions& options) {
   app.add_option_function<double>(
          "--nodata", [&options](double v) { options.nodata = v; },
          "this value means unknown, whatever the file declares")
+      ->check(takes("number"))
       ->type_name("VALUE")
       ->group(group);
   app.add_flag_callback(
@@ -104,6 +105,25 @@ void add_read_options(CLI::App& app, ReadOptions& options) {
       ->check(CLI::Range(0.0, 1.0).description(""))
       ->type_name("GREY")
       ->group(group);
+}
+
+namespace {
+
+CLI::Validator mark(std::string name) {
+  return {[](const std::string&) { return std::string(); }, "", std::move(name)};
+}
+
+}  // namespace
+
+CLI::Validator takes(std::string_view kind) { return mark(fmt::format("{}{}", kTakesMark, kind)); }
+
+CLI::Validator one_of(const std::vector<std::string>& names) {
+  return CLI::IsMember(names).description("").name(
+      fmt::format("{}{}", kChoicesMark, fmt::join(names, "|")));
+}
+
+CLI::Validator suggests(const std::vector<std::string>& names) {
+  return mark(fmt::format("{}{}", kChoicesMark, fmt::join(names, "|")));
 }
 
 std::pair<std::string, std::string> parse_setting(const std::string& text) {

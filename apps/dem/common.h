@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "dem/dem.h"
 #include "dem/io.h"
@@ -17,7 +18,8 @@
 
 namespace CLI {
 class App;
-}
+class Validator;
+}  // namespace CLI
 
 namespace dem::app {
 
@@ -63,6 +65,29 @@ CLI::App* add_verb(CLI::App& app, Shell& shell, const std::string& name, const s
 
 /// Options of verbs that read a DEM: --band, --tile, --nodata, --no-detect, --height-range ...
 void add_read_options(CLI::App& app, ReadOptions& options);
+
+// Marks on options, for completion, manuals and other programs (see manual/outline.h).
+inline constexpr std::string_view kTakesMark = "takes:", kChoicesMark = "choices:";
+
+/// The value is a number, raster, vector, points, picture, file or folder; "new ..." is written.
+CLI::Validator takes(std::string_view kind);
+
+/// The value is one of these names; any other is refused.
+CLI::Validator one_of(const std::vector<std::string>& names);
+
+/// The usual values; others are left to whoever reads them.
+CLI::Validator suggests(const std::vector<std::string>& names);
+
+/// "mcmd", "mcmd:paper", ... of a table of methods or generators.
+template <class Row>
+std::vector<std::string> names_and_presets(const std::vector<Row>& table) {
+  std::vector<std::string> names;
+  for (const auto& row : table) {
+    names.push_back(row.name);
+    for (const auto& preset : row.presets) names.push_back(row.name + ":" + preset.name);
+  }
+  return names;
+}
 
 /// "key=value"; throws std::invalid_argument.
 std::pair<std::string, std::string> parse_setting(const std::string& text);

@@ -47,8 +47,14 @@ void add_deterrace(CLI::App& app, Shell& shell) {
                         "  dem deterrace N36E008.hgt smooth.tif\n"
                         "  dem deterrace feet.tif smooth.tif --bound 0.1524",
                         [o, &shell] { return run_deterrace(*o, shell); });
-  verb->add_option("IN", o->in, "a DEM with rounded heights")->required()->type_name("");
-  verb->add_option("OUT", o->out, "the same without steps, in float32")->required()->type_name("");
+  verb->add_option("IN", o->in, "a DEM with rounded heights")
+      ->required()
+      ->check(takes("raster"))
+      ->type_name("");
+  verb->add_option("OUT", o->out, "the same without steps, in float32")
+      ->required()
+      ->check(takes("new raster"))
+      ->type_name("");
   verb->add_option("-b,--bound", o->deterrace.bound_m, "no cell moves by more, in metres")
       ->type_name("METRES")
       ->capture_default_str();

@@ -129,16 +129,23 @@ void add_erode(CLI::App& app, Shell& shell) {
       "unknown.\n" +
           settings_help(),
       [o, &shell] { return run_erode(*o, shell); });
-  verb->add_option("IN", o->in, "a DEM, anything GDAL opens")->required()->type_name("");
+  verb->add_option("IN", o->in, "a DEM, anything GDAL opens")
+      ->required()
+      ->check(takes("raster"))
+      ->type_name("");
   verb->add_option("OUT", o->out, "the eroded DEM, in fractions of metres")
       ->required()
+      ->check(takes("new raster"))
       ->type_name("");
   verb->add_option("-s,--set", o->set, "a setting; may be repeated")
       ->allow_extra_args(false)
       ->type_name("KEY=VALUE");
   verb->add_option("--water", o->water, "also write the depth of the water at the end")
+      ->check(takes("new raster"))
       ->type_name("FILE");
-  verb->add_option("--frames", o->frames, "a folder for the terrain on the way")->type_name("DIR");
+  verb->add_option("--frames", o->frames, "a folder for the terrain on the way")
+      ->check(takes("new folder"))
+      ->type_name("DIR");
   verb->add_option("--every", o->every, "steps from one frame to the next")
       ->check(CLI::Range(1, 1000000).description(""))
       ->type_name("N")

@@ -205,11 +205,16 @@ void add_evaluate(CLI::App& app, Shell& shell) {
                "  dem evaluate whole.tif filled.tif --expect 'rmse<20' --expect 'bias<=1'\n"
                "  dem evaluate whole.tif filled.tif --known sparse.tif --report errors.html",
                [o, &shell] { return evaluate(*o, shell); });
-  verb->add_option("TRUTH", o->truth, "the DEM as it should be")->required()->type_name("");
+  verb->add_option("TRUTH", o->truth, "the DEM as it should be")
+      ->required()
+      ->check(takes("raster"))
+      ->type_name("");
   verb->add_option("GOT", o->got, "the reconstruction, of the same size")
       ->required()
+      ->check(takes("raster"))
       ->type_name("");
   verb->add_option("-k,--known", o->known, "what GOT was made from: scores its unknown cells too")
+      ->check(takes("raster"))
       ->type_name("SAMPLED");
   verb->add_option("--sigma", o->sigma,
                    "what `dem fill --sigma` wrote: how well it foretold the errors")

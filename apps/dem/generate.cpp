@@ -184,11 +184,15 @@ void add_generate(CLI::App& app, Shell& shell) {
       "Names: " +
           generator_names() + "\n(their settings: dem methods NAME)",
       [o, &shell] { return generate(*o, shell); });
-  verb->add_option("NAME", o->name, "what to make, NAME or NAME:PRESET")->required()->type_name("");
+  verb->add_option("NAME", o->name, "what to make, NAME or NAME:PRESET")
+      ->required()
+      ->check(suggests(names_and_presets(generators())))
+      ->type_name("");
   verb->add_option("FILES", o->files,
                    "[IMAGE] OUT: the DEM to write, and before it the image or vector\n"
                    "layer that some generators start from")
       ->required()
+      ->check(takes("new raster"))
       ->type_name("");
   verb->add_option("--size", o->size, "columns and rows; else 1025, or the image's")
       ->type_name("N|WxH");
@@ -206,7 +210,7 @@ void add_generate(CLI::App& app, Shell& shell) {
       ->allow_extra_args(false)
       ->type_name("KEY=VALUE");
   verb->add_option("--median", o->median, "passes of a 5 x 5 median over the result; else none")
-      ->check(CLI::Range(0, 100))
+      ->check(CLI::Range(0, 100).description(""))
       ->type_name("N");
   verb->add_option("--format", o->format, "GDAL driver name, HGT or image; else by extension")
       ->type_name("NAME");

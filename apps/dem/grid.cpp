@@ -353,6 +353,7 @@ void add_point_options(CLI::App& verb, Options& o) {
 void add_lattice_options(CLI::App& verb, Options& o) {
   const char* group = "Lattice (else from the density of the points)";
   verb.add_option("--like", o.like, "the lattice of this raster")
+      ->check(takes("raster"))
       ->type_name("RASTER")
       ->group(group);
   verb.add_option("--bounds", o.bounds, "outer edges of the cells")
@@ -380,12 +381,15 @@ void add_grid(CLI::App& app, Shell& shell) {
       [o, &shell] { return grid(*o, shell); });
   verb->add_option("POINTS", o->points, "CSV, XYZ, TSV (-: standard input), LAS, any vector format")
       ->required()
+      ->check(takes("points"))
       ->type_name("");
   verb->add_option("OUT", o->out, "the DEM; the format follows the extension")
       ->required()
+      ->check(takes("new raster"))
       ->type_name("");
   verb->add_option("-m,--method", o->method,
                    "how to fill between points (see dem methods); spline, or contours")
+      ->check(suggests(names_and_presets(all_fill_methods())))
       ->type_name("NAME");
   verb->add_flag("--contours", o->contours, "POINTS are contour lines: no terraces between them");
   verb->add_option("-s,--set", o->set, "a setting of the method; may be repeated")
@@ -398,7 +402,7 @@ void add_grid(CLI::App& app, Shell& shell) {
               if (text == name) o->bin.combine = how;
           },
           "several points in a cell: mean, min, max, median; default mean")
-      ->check(CLI::IsMember({"mean", "min", "max", "median"}).description(""))
+      ->check(one_of({"mean", "min", "max", "median"}))
       ->type_name("HOW");
   verb->add_option("--reject-outliers", o->bin.outliers,
                    "leave out cells so many spreads off their surroundings, e.g. 10")
@@ -412,6 +416,7 @@ void add_grid(CLI::App& app, Shell& shell) {
       ->capture_default_str();
   verb->add_flag("--no-fill", o->no_fill, "only the cells that hold points; others are unknown");
   verb->add_option("--sigma", o->sigma, "also write the standard deviation of each cell, in metres")
+      ->check(takes("new raster"))
       ->type_name("FILE");
   add_lattice_options(*verb, *o);
   add_point_options(*verb, *o);

@@ -163,9 +163,11 @@ void add_info(CLI::App& app, Shell& shell) {
                [options, &shell] { return info(*options, shell); });
   verb->add_option("FILE", options->files, "elevation files, anything GDAL opens")
       ->required()
+      ->check(takes("raster"))
       ->type_name("");
   verb->add_option("--holes", options->holes,
                    "also write the voids as polygons with area, rim relief ...")
+      ->check(takes("new vector"))
       ->type_name("FILE.gpkg");
   add_read_options(*verb, options->read);
 }

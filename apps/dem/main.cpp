@@ -149,7 +149,7 @@ int run_verb(Shell& shell) {
 int run(int argc, char** argv) {
   install_signal_handlers();
 
-  CLI::App app("Reconstruction of digital elevation models.", "dem");
+  CLI::App app("Reconstruction of digital elevation models", "dem");
   app.set_version_flag("--version", std::string("dem ") + DEM_VERSION);
   app.footer(kExamples);
   app.get_formatter()->column_width(31);
@@ -170,6 +170,8 @@ int run(int argc, char** argv) {
   add_erode(app, shell);
   add_render(app, shell);
   add_methods(app, shell);
+  add_manual(app, shell);
+  add_completion(app, shell);
   for (auto* verb : app.get_subcommands({})) shell.add_options(*verb);
 
   if (argc == 1) {

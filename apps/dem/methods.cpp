@@ -5,7 +5,11 @@
 #include <CLI/CLI.hpp>
 
 #include "dem/baselines.h"
+#include "dem/draw.h"
+#include "dem/erosion.h"
 #include "dem/generators.h"
+#include "dem/raytrace.h"
+#include "manual/outline.h"
 #include "verbs.h"
 
 namespace dem::app {
@@ -53,6 +57,35 @@ Json as_json(const Generator& g) {
           {"presets", as_json(g.presets)}};
 }
 
+Json as_json(const ArgumentOutline& a) {
+  return {{"names", a.names},       {"value", a.value},     {"doc", a.doc},
+          {"group", a.group},       {"takes", a.takes},     {"choices", a.choices},
+          {"required", a.required}, {"repeats", a.repeats}, {"default", a.default_text}};
+}
+
+Json as_json(const std::vector<ArgumentOutline>& arguments) {
+  Json all = Json::array();
+  for (const auto& a : arguments) all.push_back(as_json(a));
+  return all;
+}
+
+/// The verbs with their options: for programs that offer them in another form.
+Json as_json(const std::vector<VerbOutline>& verbs) {
+  Json all = Json::array();
+  for (const auto& v : verbs)
+    all.push_back({{"name", v.name},
+                   {"summary", v.summary},
+                   {"arguments", as_json(v.arguments)},
+                   {"options", as_json(v.options)}});
+  return all;
+}
+
+template <class Options>
+Json fields_of() {
+  Options defaults;
+  return as_json(describe(fields(defaults)));
+}
+
 /// A row of either table.
 template <class Row>
 std::string as_text(const Row& row) {
@@ -88,22 +121,30 @@ Json rows_of(const std::vector<Row>& table, const std::string& name, const std::
   return rows;
 }
 
-std::string all_names() {
+std::vector<std::string> method_names() {
   std::vector<std::string> names;
   for (const auto& m : all_fill_methods()) names.push_back(m.name);
   for (const auto& g : generators()) names.push_back(g.name);
-  return fmt::format("{}", fmt::join(names, ", "));
+  return names;
 }
 
-int methods(const std::string& wanted, Shell& shell) {
+int methods(const std::string& wanted, CLI::App& app, Shell& shell) {
   const std::string name = wanted.substr(0, wanted.find(':'));
   std::string text;
   const Json fill = rows_of(all_fill_methods(), name, "Methods of `dem fill`:", text);
   const Json made = rows_of(generators(), name, "Generators of `dem generate`:", text);
   if (fill.empty() && made.empty())
-    throw std::invalid_argument(
-        fmt::format("unknown method \"{}\"; must be one of {}", wanted, all_names()));
-  shell.print({{"fill", fill}, {"generators", made}}, text);
+    throw std::invalid_argument(fmt::format("unknown method \"{}\"; must be one of {}", wanted,
+                                            fmt::join(method_names(), ", ")));
+  Json tables{{"fill", fill}, {"generators", made}};
+  if (name.empty()) {
+    tables["erosion"] = fields_of<ErosionOptions>();
+    tables["styles"] = {{"hillshade", fields_of<HillshadeOptions>()},
+                        {"relief", fields_of<ReliefOptions>()},
+                        {"view", fields_of<ViewOptions>()}};
+    tables["verbs"] = as_json(outline(app));
+  }
+  shell.print(tables, text);
   return kDone;
 }
 
@@ -116,8 +157,10 @@ void add_methods(CLI::App& app, Shell& shell) {
                "  dem methods\n"
                "  dem methods mcmd                   # one of them\n"
                "  dem methods --json | jq '.fill[].name'",
-               [name, &shell] { return methods(*name, shell); });
-  verb->add_option("NAME", *name, "one of them; all, when left out")->type_name("");
+               [name, &app, &shell] { return methods(*name, app, shell); });
+  verb->add_option("NAME", *name, "one of them; all, when left out")
+      ->check(suggests(method_names()))
+      ->type_name("");
 }
 
 }  // namespace dem::app

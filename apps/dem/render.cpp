@@ -145,6 +145,7 @@ void add_field_options(CLI::App& app, const std::shared_ptr<Options>& o) {
            "--" + f.name(),
            [o, name = f.name()](const std::string& text) { o->given[name] = text; },
            values + " [" + normally + "]")
+        ->check(f.choices().empty() ? takes("number") : suggests(f.choices()))
         ->type_name(f.choices().empty() ? "N" : "NAME")
         ->group(group);
   };
@@ -181,12 +182,16 @@ void add_render(CLI::App& app, Shell& shell) {
                "Palettes:" +
                    palette_lines(),
                [o, &shell] { return render(*o, shell); });
-  verb->add_option("IN", o->in, "a DEM, anything GDAL opens")->required()->type_name("");
+  verb->add_option("IN", o->in, "a DEM, anything GDAL opens")
+      ->required()
+      ->check(takes("raster"))
+      ->type_name("");
   verb->add_option("OUT", o->out, "the picture; the extension says the format: .png, .jpg, .tif")
       ->required()
+      ->check(takes("new picture"))
       ->type_name("");
   verb->add_option("--style", o->style, "hillshade and relief: maps, a pixel a cell; view")
-      ->check(CLI::IsMember({"hillshade", "relief", "view"}).description(""))
+      ->check(one_of({"hillshade", "relief", "view"}))
       ->type_name("STYLE")
       ->capture_default_str();
   add_field_options(*verb, o);

@@ -122,8 +122,14 @@ void add_sample(CLI::App& app, Shell& shell) {
                "  dem sample N44W072.hgt edges.tif --edges 10%     # silhouettes, by Sobel\n"
                "  dem sample whole.tif holed.tif --voids 5%        # holes as SRTM has them",
                [o, &shell] { return run_sample(*o, shell); });
-  verb->add_option("IN", o->in, "a DEM, as whole as can be")->required()->type_name("");
-  verb->add_option("OUT", o->out, "the same with fewer known cells")->required()->type_name("");
+  verb->add_option("IN", o->in, "a DEM, as whole as can be")
+      ->required()
+      ->check(takes("raster"))
+      ->type_name("");
+  verb->add_option("OUT", o->out, "the same with fewer known cells")
+      ->required()
+      ->check(takes("new raster"))
+      ->type_name("");
   const auto way = [&](const char* name, auto& value, const char* type, const char* doc) {
     return verb->add_option(name, value, doc)->type_name(type)->group("How (exactly one)");
   };
@@ -146,6 +152,7 @@ void add_sample(CLI::App& app, Shell& shell) {
           "keep so many that --method misses no cell by more")
           ->check(positive)};
   verb->add_option("-m,--method", o->method, "that --greedy and --max-error reconstruct with")
+      ->check(suggests(names_and_presets(all_fill_methods())))
       ->type_name("NAME")
       ->capture_default_str();
   verb->add_option("--seed", o->seed, "another seed, other cells; the same on every machine")

@@ -85,8 +85,12 @@ void add_supersample(CLI::App& app, Shell& shell) {
                         [o, &shell] { return run_supersample(*o, shell); });
   verb->add_option("IN", o->in, "a DEM; its unknown cells are filled too")
       ->required()
+      ->check(takes("raster"))
       ->type_name("");
-  verb->add_option("OUT", o->out, "the finer DEM, in float32")->required()->type_name("");
+  verb->add_option("OUT", o->out, "the finer DEM, in float32")
+      ->required()
+      ->check(takes("new raster"))
+      ->type_name("");
   verb->add_option("-f,--factor", o->super.factor, "so many fine cells to a coarse one; above 1")
       ->required()
       ->type_name("N");
@@ -96,12 +100,13 @@ void add_supersample(CLI::App& app, Shell& shell) {
             o->super.preserve = what == "heights" ? Preserve::heights : Preserve::means;
           },
           "heights (default): met at the coarse centres; block-mean")
-      ->check(CLI::IsMember({"heights", "block-mean"}).description(""))
+      ->check(one_of({"heights", "block-mean"}))
       ->type_name("WHAT");
   verb->add_flag("--roughness", o->roughness,
                  "a random surface, as rough below the old cell size as terrain is");
   verb->add_option("--seed", o->seed, "of the roughness")->type_name("N")->capture_default_str();
   verb->add_option("-m,--method", o->method, "how to fill between (see dem methods)")
+      ->check(suggests(names_and_presets(all_fill_methods())))
       ->type_name("NAME")
       ->capture_default_str();
   verb->add_option("-s,--set", o->set, "a setting of the method; may be repeated")

@@ -1,5 +1,5 @@
 #pragma once
-// One function per verb, each in a file of its own: it adds the verb to the command line.
+// One function per verb, in a file of its own or with its kin: it adds the verb to the command line.
 
 #include "common.h"
 
@@ -19,5 +19,7 @@ void add_generate(CLI::App& app, Shell& shell);
 void add_erode(CLI::App& app, Shell& shell);
 void add_render(CLI::App& app, Shell& shell);
 void add_methods(CLI::App& app, Shell& shell);
+void add_manual(CLI::App& app, Shell& shell);
+void add_completion(CLI::App& app, Shell& shell);
 
 }  // namespace dem::app

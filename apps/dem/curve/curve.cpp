@@ -97,9 +97,13 @@ void add_curve(CLI::App& app, Shell& shell) {
       "  dem curve whole.tif results --budget 5,10 --methods spline\n" +
           fmt::format("Rates: {}, when none are given", fmt::join(o->curve.percents, ", ")),
       [o, &shell] { return curve(*o, shell); });
-  verb->add_option("TRUTH", o->truth, "a DEM, as whole as can be")->required()->type_name("");
+  verb->add_option("TRUTH", o->truth, "a DEM, as whole as can be")
+      ->required()
+      ->check(takes("raster"))
+      ->type_name("");
   verb->add_option("DIR", o->dir, "folder for curves.csv, curves.json, curves.svg")
       ->required()
+      ->check(takes("new folder"))
       ->type_name("");
   verb->add_option("-m,--methods", o->curve.methods, "names, by commas; all, when left out")
       ->delimiter(',')
@@ -120,6 +124,7 @@ void add_curve(CLI::App& app, Shell& shell) {
       ->capture_default_str();
   verb->add_option("--rivals", o->rivals,
                    "scores of other programs (scripts/compare.py), for the picture")
+      ->check(takes("file"))
       ->allow_extra_args(false)
       ->type_name("FILE");
   verb->add_option("--seed", o->curve.seed, "of the cells that are kept")

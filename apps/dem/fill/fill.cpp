@@ -318,6 +318,12 @@ int fill(const Options& o, Shell& shell) {
   return exit_code(out);
 }
 
+std::vector<std::string> type_names() {
+  std::vector<std::string> names;
+  for (const auto& [name, type] : kTypes) names.push_back(name);
+  return names;
+}
+
 std::string method_names() {
   std::vector<std::string> names;
   for (const auto& m : all_fill_methods()) names.push_back(m.name);
@@ -336,6 +342,7 @@ void add_write_options(CLI::App& app, WriteOptions& write) {
              if (text == name) write.type = type;
          },
          "int8 uint8 int16 uint16 int32 uint32 float32 float64; else as IN")
+      ->check(suggests(type_names()))
       ->check([](const std::string& name) {
         for (const auto& [text, type] : kTypes)
           if (text == name) return std::string();
@@ -348,6 +355,7 @@ void add_write_options(CLI::App& app, WriteOptions& write) {
   app.add_option_function<double>(
          "--out-nodata", [&write](double v) { write.nodata = v; },
          "the no-data value that OUT declares; else as IN")
+      ->check(takes("number"))
       ->type_name("VALUE")
       ->group(group);
 }
@@ -367,18 +375,22 @@ void add_fill(CLI::App& app, Shell& shell) {
       [o, &shell] { return fill(*o, shell); });
   verb->add_option("IN", o->in, "a DEM with holes, anything GDAL opens; or a folder of tiles")
       ->required()
+      ->check(takes("raster"))
       ->type_name("");
   verb->add_option("OUT", o->out,
                    "by extension; NAME.vrt: tiles of GeoTIFF; FOLDER/: tiles of .hgt")
       ->required()
+      ->check(takes("new raster"))
       ->type_name("");
   verb->add_option("-m,--method", o->method, "how to fill, NAME or NAME:PRESET")
+      ->check(suggests(names_and_presets(all_fill_methods())))
       ->type_name("NAME")
       ->capture_default_str();
   verb->add_option("-s,--set", o->set, "a setting of the method; may be repeated")
       ->allow_extra_args(false)
       ->type_name("KEY=VALUE");
   verb->add_option("--sigma", o->sigma, "also write the standard deviation of each cell, in metres")
+      ->check(takes("new raster"))
       ->type_name("FILE");
   verb->add_option("--roughness", o->roughness,
                    "gaps as rough as the terrain around (auto), or VALUE times that")
@@ -390,16 +402,20 @@ void add_fill(CLI::App& app, Shell& shell) {
   verb->add_option("--seed", o->seed, "of random numbers")->type_name("N");
   verb->add_option("--source", o->origin,
                    "also write where each cell comes from: measured, method, aux, water")
+      ->check(takes("new raster"))
       ->type_name("FILE");
   verb->add_option("--report-holes", o->table,
                    "also write a JSON table of holes, with errors of hidden rim cells")
+      ->check(takes("new file"))
       ->type_name("FILE");
   add_report_option(*verb, o->report);
   verb->add_option("--aux", o->aux,
                    "a DEM to fill over; each hole takes the best of several, or none")
+      ->check(takes("raster"))
       ->allow_extra_args(false)
       ->type_name("DEM");
   verb->add_option("--water", o->water, "polygons of lakes: flat where unknown, their shores above")
+      ->check(takes("vector"))
       ->type_name("FILE");
   verb->add_flag("--whole", o->whole,
                  "as one problem, not hole by hole; so by itself above 25 % unknown");

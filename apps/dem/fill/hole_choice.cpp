@@ -27,11 +27,13 @@ void HoleChoice::add_options(CLI::App& app) {
       ->group(group);
   app.add_option("--max-area-km2", max_area_km2, "only those up to this area on the ground")
       ->check(above_zero())
+      ->check(takes("number"))
       ->type_name("A")
       ->group(group);
   app.add_option("--max-distance-m", max_distance_m,
                  "only those with no cell further from data than this")
       ->check(above_zero())
+      ->check(takes("number"))
       ->type_name("D")
       ->group(group);
   app.add_option("--min-cells", min_cells, "only those of at least so many cells")
@@ -41,6 +43,7 @@ void HoleChoice::add_options(CLI::App& app) {
       ->type_name("CONDITION")
       ->group(group);
   app.add_option("--region", region, "only those with a cell in these polygons, anything OGR opens")
+      ->check(takes("vector"))
       ->type_name("FILE")
       ->group(group);
 }

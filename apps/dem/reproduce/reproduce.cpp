@@ -147,11 +147,17 @@ void add_reproduce(CLI::App& app, Shell& shell) {
                [o, &shell] { return reproduce(*o, shell); });
   verb->add_option("WHAT", o->what, "mount-washington, n36e008 or figures")
       ->required()
-      ->check(CLI::IsMember({"mount-washington", "n36e008", "figures"}).description(""))
+      ->check(one_of({"mount-washington", "n36e008", "figures"}))
       ->type_name("");
-  verb->add_option("DIR", o->dir, "folder for pictures and curves")->required()->type_name("");
-  verb->add_option("-t,--tile", o->tile, "the elevations, any path GDAL opens")->type_name("FILE");
+  verb->add_option("DIR", o->dir, "folder for pictures and curves")
+      ->required()
+      ->check(takes("new folder"))
+      ->type_name("");
+  verb->add_option("-t,--tile", o->tile, "the elevations, any path GDAL opens")
+      ->check(takes("raster"))
+      ->type_name("FILE");
   verb->add_option("--data", o->data, "folder with tiles; else $DEM_TESTDATA, else ../shared/data")
+      ->check(takes("folder"))
       ->type_name("DIR");
   verb->add_option("--repeats", o->repeats, "runs of each measurement; the median time counts")
       ->check(CLI::Range(1, 1000).description(""))

@@ -1,0 +1,15 @@
+#pragma once
+// Scripts that complete the command line in a shell.
+
+#include <string>
+#include <vector>
+
+#include "manual/outline.h"
+
+namespace dem::app {
+
+/// For shells named "bash", "zsh" and "fish".
+std::vector<std::string> shells();
+std::string completion(const std::string& shell, const std::vector<VerbOutline>& verbs);
+
+}  // namespace dem::app
