@@ -15,6 +15,10 @@ void check_shape(const Dem& dem) {
   if (z != known)
     throw std::invalid_argument(fmt::format("dem.known is {} x {}; must be {} x {} as dem.z",
                                             known.cols, known.rows, z.cols, z.rows));
+  if (!dem.breaks.empty() && dem.breaks.size() != z)
+    throw std::invalid_argument(
+        fmt::format("dem.breaks is {} x {}; must be {} x {} as dem.z, or empty", dem.breaks.cols(),
+                    dem.breaks.rows(), z.cols, z.rows));
 }
 
 void check_fillable(const Dem& dem) {
