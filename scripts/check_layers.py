@@ -11,8 +11,8 @@ import tempfile
 
 # The layer of each file. A header dem/NAME.h and its source NAME.cpp share a name and a layer.
 LAYERS = {
-    "values": ["canvas", "dem", "fields", "palette", "raster", "river", "run"],
-    "helpers": ["cubic", "envelope", "flood", "gradient", "parallel", "paths", "random", "vectorised"],  # private: for any algorithm
+    "values": ["breaklines", "canvas", "dem", "fields", "palette", "raster", "river", "run"],
+    "helpers": ["cubic", "envelope", "flood", "gradient", "lie_together", "parallel", "paths", "random", "vectorised"],  # private: for any algorithm
     "algorithms": ["baseline", "breakdown", "contours", "deterrace", "draw", "erosion", "evaluate", "faults", "holes", "mcmd", "networks",
                    "noise", "outliers", "points", "raytrace", "riverland", "sample", "sketch", "spline"],
     "methods": ["find_row", "generators", "greedy", "gridding", "methods", "supersample"],
@@ -24,10 +24,10 @@ LAYERS = {
 # An algorithm that is written in several private files. They belong to it alone.
 PARTS = {
     "holes": ["hole_filter", "hole_parts", "hole_scan", "hole_windows"],
-    "mcmd": ["lattice", "midpoint", "pyramid", "row_kernels", "waves"],
+    "mcmd": ["contour_sides", "lattice", "midpoint", "pyramid", "row_kernels", "waves"],
     "networks": ["growth", "ridges", "rivers"],
     "raytrace": ["heightfield", "sky", "view"],
-    "spline": ["grid", "multigrid", "overshoot", "roughness", "spline_parameters", "spline_sample", "spline_solver",
+    "spline": ["cuts", "grid", "multigrid", "overshoot", "roughness", "spline_parameters", "spline_sample", "spline_solver",
                "springs", "tensor"],
     "riverland": ["riverland_heights", "riverland_parts", "riverland_relief", "riverland_rivers"],
     "sketch": ["lsystem"],

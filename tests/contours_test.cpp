@@ -3,8 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "dem/mcmd.h"
 #include "dem/sample.h"
 #include "dem/spline.h"
 
@@ -102,6 +104,52 @@ TEST(FillContours, IsNearerToTheTruthThanTheSplineAlone) {
   };
   const Dem truth = surface_of(160, 120, slopes), lines = sample_contours(truth, 10);
   EXPECT_LT(rmse(truth, fill_contours(lines).z), 0.9 * rmse(truth, fill_spline(lines).z));
+}
+
+TEST(FillContours, OfNoContourLinesIsTheSpline) {
+  // Whole metres at every second cell: few levels, and gaps between two of them, but no lines.
+  Dem rounded = surface_of(120, 110, rolling);
+  for (float& z : rounded.z.cells()) z = std::round(z);
+  for (const Dem& dem : {sample_random(rounded, 6600), sample_random(rounded, 600),
+                         sample_voids(rounded, {.remove = 2000})}) {
+    EXPECT_FALSE(contour_bounds(dem).lines);
+    const Raster<float> got = fill_contours(dem).z, want = fill_spline(dem).z;
+    EXPECT_TRUE(std::ranges::equal(got.cells(), want.cells()));
+  }
+  EXPECT_TRUE(contour_bounds(sample_contours(rounded, 10)).lines);
+}
+
+/// How much likelier a cell between lines lies within a twentieth of a level than elsewhere.
+double peak_ratio(const Dem& lines, const Raster<float>& z, double interval) {
+  double near = 0, all = 0;
+  for (std::size_t i = 0; i < z.cells().size(); ++i) {
+    if (lines.known.cells()[i]) continue;
+    const double steps = double(z.cells()[i]) / interval;
+    near += std::abs(steps - std::round(steps)) < 0.05;
+    ++all;
+  }
+  return near / (0.1 * all);
+}
+
+TEST(FillMcmd, WithTwoSidedContoursMakesNoTerraces) {
+  const Dem truth = surface_of(160, 150, rolling), lines = sample_contours(truth, 20);
+  const Raster<float> one = fill_mcmd(lines), two = fill_mcmd(lines, {.two_sided = true});
+  EXPECT_GT(peak_ratio(lines, one, 20), 3);
+  EXPECT_LT(peak_ratio(lines, two, 20), 1.3);
+  EXPECT_LT(rmse(truth, two), 0.8 * rmse(truth, one));
+  for (std::size_t i = 0; i < two.cells().size(); ++i)
+    if (lines.known.cells()[i]) {
+      ASSERT_EQ(two.cells()[i], lines.z.cells()[i]);
+    }
+  const Raster<float> threaded = fill_mcmd(lines, {.two_sided = true}, {3, {}});
+  EXPECT_TRUE(std::ranges::equal(two.cells(), threaded.cells()));
+}
+
+TEST(FillMcmd, WithTwoSidedContoursIsExactBetweenStraightLines) {
+  // A plane: each cell off a line finds the two next lines, and lies between them as it should.
+  const Dem lines = sample_contours(surface_of(90, 40, [](int c, int) { return 100 + 2 * c; }), 10);
+  const Raster<float> z = fill_mcmd(lines, {.two_sided = true});
+  for (int c = 10; c < 80; ++c) EXPECT_NEAR(z(c, 20), 100 + 2 * c, 0.5) << c;
 }
 
 }  // namespace

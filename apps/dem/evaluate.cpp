@@ -88,11 +88,10 @@ Scores scores_of(const Options& o, Json& sections, Stopwatch& watch, const Run& 
   if (!o.report.empty()) {
     const Raster<float> truth_z = completed(truth.dem, got.dem.z),
                         got_z = completed(got.dem, truth.dem.z);
-    sections = error_sections(
-        {truth_z, got_z, comparable, filled.empty() ? comparable : filled,
-         scores.filled ? *scores.filled : scores.all, known, sigma,
-         spacing_by_row(truth.dem.ref, size), truth.dem.spacing},
-        scores.truth, scores.got, run.part(0.85, 1));
+    sections = error_sections({truth_z, got_z, comparable, filled.empty() ? comparable : filled,
+                               scores.filled ? *scores.filled : scores.all, known, sigma,
+                               spacing_by_row(truth.dem.ref, size), truth.dem.spacing},
+                              scores.truth, scores.got, run.part(0.85, 1));
     watch.lap("drawing");
   }
   return scores;

@@ -10,6 +10,7 @@
 #include "dem/gridding.h"
 #include "dem/lattices.h"
 #include "dem/point_files.h"
+#include "dem/polygons.h"
 #include "verbs.h"
 
 namespace dem::app {
@@ -21,7 +22,7 @@ const std::vector<std::pair<std::string, Combine>> kCombine{{"mean", Combine::me
                                                             {"median", Combine::median}};
 
 struct Options {
-  std::string points, out, sigma;
+  std::string points, out, sigma, breaklines;
   std::string like, bounds, cell;
   std::string method;  // "": chosen by what the points are
   std::string delimiter;
@@ -32,10 +33,20 @@ struct Options {
   GriddingOptions gridding;
 };
 
+void check_honours_breaklines(const FillMethod& method) {
+  if (method.traits.honours_breaklines) return;
+  std::vector<std::string> others;
+  for (const FillMethod& m : all_fill_methods())
+    if (m.traits.honours_breaklines) others.push_back(m.name);
+  throw std::invalid_argument(fmt::format("--breaklines: method {} knows none; these do: {}",
+                                          method.name, fmt::join(others, ", ")));
+}
+
 ChosenMethod choose(const Options& o) {
   ChosenMethod chosen = find_method(all_fill_methods(), o.method);
   for (const auto& text : o.set) chosen.settings.push_back(parse_setting(text));
   if (!o.sigma.empty()) chosen.settings.emplace_back("sigma", "law");
+  if (!o.breaklines.empty() && !o.no_fill) check_honours_breaklines(*chosen.method);
   // One known cell is cheap to fill: bad settings show before long work.
   const Filled trial =
       chosen.method->fill({Raster<float>({1, 1}), Mask({1, 1}, 1), {}, {}}, chosen.settings, {});
@@ -105,6 +116,14 @@ Lattice chosen_lattice(const Options& o, const Extent& extent, const std::string
   return lattice_over(bounds, parse_cell_size(o.cell), crs, o.nodes || o.bounds.empty());
 }
 
+Breaklines breaklines_on(const Options& o, const Lattice& lattice) {
+  if (o.breaklines.empty()) return {};
+  Breaklines lines = read_breaklines(o.breaklines, lattice.ref, lattice.size);
+  if (std::ranges::all_of(lines.breaks().cells(), [](auto b) { return b == 0; }))
+    throw IoError(o.breaklines, "none of its lines passes between two cells of the lattice");
+  return lines;
+}
+
 /// Points so close along contour lines that the lines cross no cell unseen; `vertices` has what a
 /// first reading found, in the lattice's system.
 double spacing_along_lines(const Options& o, const Lattice& lattice, const Extent& vertices,
@@ -138,8 +157,9 @@ Read read_contours(const Options& o, const Run& run) {
     throw IoError(o.points, "has points; --contours needs a vector layer of lines");
   if (!lattice) lattice = chosen_lattice(o, vertices, first.crs_wkt);
   options.along_lines = spacing_along_lines(o, *lattice, vertices, run.part(0.2, 0.3));
-  PointBins levels(*lattice, {.combine = Combine::median, .plane = false});
-  PointBins heights(*lattice, {.plane = o.bin.plane});
+  const Breaklines lines = breaklines_on(o, *lattice);
+  PointBins levels(*lattice, {.combine = Combine::median, .plane = false}, lines);
+  PointBins heights(*lattice, {.plane = o.bin.plane}, lines);
   const Run quiet{run.threads, {}};
   const auto sink = [&](const Points& part) {
     levels.add(part, quiet);
@@ -161,7 +181,7 @@ Read read_into_bins(const Options& o, const Run& run) {
   auto lattice = given_lattice(o, run.part(0, 0.05));
   if (lattice && !lattice->ref.crs_wkt.empty()) options.to_crs = lattice->ref.crs_wkt;
   std::optional<PointBins> bins;
-  if (lattice) bins.emplace(*lattice, o.bin);
+  if (lattice) bins.emplace(*lattice, o.bin, breaklines_on(o, *lattice));
   Points all;
   const Run quiet{run.threads, {}};
   const auto sink = [&](const Points& part) {
@@ -173,7 +193,8 @@ Read read_into_bins(const Options& o, const Run& run) {
   };
   read.source = read_points(o.points, options, sink, run.part(0.05, 0.8));
   if (!bins) {
-    bins.emplace(chosen_lattice(o, read.extent, read.source.crs_wkt), o.bin);
+    const Lattice chosen = chosen_lattice(o, read.extent, read.source.crs_wkt);
+    bins.emplace(chosen, o.bin, breaklines_on(o, chosen));
     bins->add(all, run.part(0.8, 0.9));
   }
   read.lattice_from = !o.like.empty()     ? "as " + o.like
@@ -217,6 +238,9 @@ void say_what_was_read(const Options& o, const Read& read, Shell& shell) {
   if (read.source.other_class > 0)
     shell.say("{} of other classes left out", plural(read.source.other_class, "point"));
   if (n.outside > 0) shell.say("{} outside the lattice left out", plural(n.outside, "point"));
+  if (n.parted > 0)
+    shell.say("{} parted from their cell's centre by a breakline left out",
+              plural(n.parted, "point"));
   if (n.duplicates > 0)
     shell.say(
         "{} at the place of another with another elevation: combined by {}",
@@ -242,6 +266,7 @@ Json as_json(const Read& read) {
           {"without_z", read.source.without_z},
           {"other_class", read.source.other_class},
           {"outside", n.outside},
+          {"parted", n.parted},
           {"combined", n.combined},
           {"duplicates", n.duplicates},
           {"outlier_cells", n.outliers},
@@ -265,6 +290,30 @@ void write_outputs(const Options& o, const Dem& dem, const Raster<float>& sigma,
     write.metadata = {{"DEM_METHOD", o.no_fill ? "points only" : o.method},
                       {"DEM_VERSION", DEM_VERSION}};
   write_dem(o.out, dem, source, write, run.part(0.4, 1));
+}
+
+/// Says where breaklines close off cells without a point.
+std::size_t say_what_is_closed_off(const Dem& dem, Shell& shell) {
+  const Mask closed = cells_closed_off(dem.known, dem.breaks);
+  const std::size_t cells = count(closed);
+  if (cells == 0) return 0;
+  Dem others = dem;
+  for (std::size_t i = 0; i < closed.cells().size(); ++i)
+    others.known.cells()[i] = !closed.cells()[i];
+  const std::vector<Hole> areas = find_holes(others);
+  constexpr std::size_t named = 3;
+  for (std::size_t i = 0; i < std::min(named, areas.size()); ++i) {
+    const Box& box = areas[i].box;
+    const auto& at = dem.ref.to_world;
+    const double col = box.col + (box.cols - 1) / 2., row = box.row + (box.rows - 1) / 2.;
+    shell.say(
+        "breaklines close off {} around x {:.10g}, y {:.10g} without a point: filled as though "
+        "there were no line",
+        plural(areas[i].cells, "cell"), at[0] + at[1] * col + at[2] * row,
+        at[3] + at[4] * col + at[5] * row);
+  }
+  if (areas.size() > named) shell.say("... and {} more such areas", areas.size() - named);
+  return cells;
 }
 
 /// Contour lines by their own method have their levels as bounds; all else goes through its points.
@@ -296,6 +345,7 @@ int grid(Options& o, Shell& shell) {
   Raster<float> sigma;
   if (!o.no_fill) {
     if (o.snap) read.binned.off_centre.clear();
+    if (!o.breaklines.empty()) json["closed_off"] = say_what_is_closed_off(dem, shell);
     const auto start = std::chrono::steady_clock::now();
     Gridded gridded = fill(o, read, method, run.part(0.4, 0.9));
     const double seconds =
@@ -395,6 +445,9 @@ void add_grid(CLI::App& app, Shell& shell) {
   verb->add_option("-s,--set", o->set, "a setting of the method; may be repeated")
       ->allow_extra_args(false)
       ->type_name("KEY=VALUE");
+  verb->add_option("--breaklines", o->breaklines,
+                   "lines and polygons across which the surface may jump: cliffs, dams, quays")
+      ->type_name("LAYER");
   verb->add_option_function<std::string>(
           "--combine",
           [o](const std::string& name) {

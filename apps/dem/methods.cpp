@@ -43,6 +43,8 @@ Json as_json(const FillMethod& m) {
           {"summary", m.summary},
           {"citation", m.citation},
           {"default", m.name == default_fill_method()},
+          {"for_contours", m.traits.for_contours},
+          {"honours_breaklines", m.traits.honours_breaklines},
           {"fields", as_json(m.fields)},
           {"presets", as_json(m.presets)}};
 }
@@ -93,6 +95,10 @@ std::string as_text(const Row& row) {
                                  row.citation.empty() ? "" : " [" + row.citation + "]");
   if constexpr (requires { row.image; })
     if (!row.image.empty()) text += fmt::format("  starts from an image: {}\n", row.image);
+  if constexpr (requires { row.traits; }) {
+    if (row.traits.for_contours) text += "  for contour lines only\n";
+    if (row.traits.honours_breaklines) text += "  honours breaklines\n";
+  }
   for (const auto& f : row.fields) {
     const std::string unit = f.unit.empty() ? "" : " " + f.unit;
     text += fmt::format("  {:<18} {}{}   ({}{})\n      {}\n", f.name, f.default_text, unit, f.type,

@@ -61,8 +61,7 @@ Scores score(const Dem& truth, const Dem& got, const Mask& comparable, const Mas
   if (!filled.empty()) scores.filled = compare(truth_z, got_z, filled, spacing, run.part(0.4, 0.7));
 
   if (!sigma.empty())
-    scores.calibration =
-        calibration(truth_z, got_z, filled.empty() ? comparable : filled, sigma);
+    scores.calibration = calibration(truth_z, got_z, filled.empty() ? comparable : filled, sigma);
 
   // A spectrum needs whole surfaces, large enough to hold a few waves.
   if (compared == size.cells() && size.cols >= 16 && size.rows >= 16) {

@@ -16,13 +16,14 @@ struct Measure {
   double Errors::*value;
   const char* title;  ///< in a report
 };
-inline constexpr Measure kMeasures[] = {{"rmse", "m", &Errors::rmse_m, "RMSE"},
-                                        {"mae", "m", &Errors::mae_m, "mean of |error|"},
-                                        {"bias", "m", &Errors::bias_m, "bias"},
-                                        {"nmad", "m", &Errors::nmad_m, "NMAD"},
-                                        {"le90", "m", &Errors::le90_m, "LE90"},
-                                        {"max", "m", &Errors::max_m, "largest |error|"},
-                                        {"slope_rmse", "deg", &Errors::slope_rmse_deg, "RMSE of slope"}};
+inline constexpr Measure kMeasures[] = {
+    {"rmse", "m", &Errors::rmse_m, "RMSE"},
+    {"mae", "m", &Errors::mae_m, "mean of |error|"},
+    {"bias", "m", &Errors::bias_m, "bias"},
+    {"nmad", "m", &Errors::nmad_m, "NMAD"},
+    {"le90", "m", &Errors::le90_m, "LE90"},
+    {"max", "m", &Errors::max_m, "largest |error|"},
+    {"slope_rmse", "deg", &Errors::slope_rmse_deg, "RMSE of slope"}};
 
 /// How well a standard deviation foretold the errors, over cells where it is above 0.
 struct Calibration {

@@ -36,13 +36,15 @@ const std::vector<FillMethod>& fill_methods() {
              {"L3", "0"},
              {"fourth_order", "false"},
              {"adaptive", "false"}}}},
-          [](const Dem& d, const SplineOptions& o, const Run& r) { return fill_spline(d, o, r); }),
+          [](const Dem& d, const SplineOptions& o, const Run& r) { return fill_spline(d, o, r); },
+          {.honours_breaklines = true}),
       make_method<ContourOptions>(
           "contours",
           "the spline held between contour lines: no terraces, hills beyond the last line", "", {},
           [](const Dem& d, const ContourOptions& o, const Run& r) {
             return fill_contours(d, o, r);
-          }),
+          },
+          {.for_contours = true, .honours_breaklines = true}),
       make_method<MdiOptions>("mdi",
                               "Midpoint Displacement's Inverse with its noise, then plain MD",
                               "belhadj2005", {}, fill_mdi),

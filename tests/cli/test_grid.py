@@ -114,6 +114,48 @@ class Contours(CliTest):
         self.fails(2, "grid", "n.geojson", "g.tif", "--contours", "--cell", "1s", says=["has no elevations", "--z-field"])
 
 
+class Breaklines(CliTest):
+    """Two terraces, 100 m apart, with a wall at x = 203."""
+
+    def setUp(self):
+        super().setUp()
+        places = [(x, y) for x in range(4, 400, 19) for y in range(3, 300, 17)]
+        self.write("p.csv", csv([(x, y, 0 if x < 203 else 100) for x, y in places]))
+        self.layer("wall.geojson", "LineString", [[203, -50], [203, 350]])
+
+    def layer(self, name, kind, coordinates):
+        return self.write(name, json.dumps({"type": "Feature", "properties": {}, "geometry": {
+            "type": kind, "coordinates": coordinates}}))
+
+    def grid(self, *arguments):
+        done = self.succeeds("grid", "p.csv", "g.asc", "--bounds", "0,0,400,300", "--cell", "10m", "--overwrite", *arguments)
+        rows = [line.split() for line in self.read("g.asc").decode().splitlines() if line[0] not in "ncxydN"]
+        return done, [[float(z) for z in row] for row in rows]
+
+    def test_the_surface_jumps_at_a_line(self):
+        _, smooth = self.grid()
+        _, cut = self.grid("--breaklines", "wall.geojson")
+        self.assertTrue(all(1 < max(abs(z) for z in row[18:20]) for row in smooth))
+        for row in cut:
+            for col, z in enumerate(row):
+                self.assertAlmostEqual(z, 0 if col < 20 else 100, delta=0.01)
+
+    def test_an_area_without_points_is_named(self):
+        self.layer("pond.geojson", "Polygon", [[[61, 61], [61, 74], [74, 74], [74, 61], [61, 61]]])
+        done, heights = self.grid("--breaklines", "pond.geojson")
+        self.assertIn("close off 1 cell around x 65, y 65 without a point", done.stderr)
+        self.assertAlmostEqual(heights[23][6], 0, delta=1)
+
+    def test_what_is_wrong_is_one_line(self):
+        grid = ["grid", "p.csv", "g.tif", "--cell", "10m", "--breaklines"]
+        self.fails(2, *grid, "none.gpkg", says=["none.gpkg"])
+        self.layer("far.geojson", "LineString", [[9000, 0], [9000, 9]])
+        self.fails(2, *grid, "far.geojson", says=["none of its lines passes between two cells"])
+        self.layer("point.geojson", "Point", [3, 4])
+        self.fails(2, *grid, "point.geojson", says=["holds no line and no polygon"])
+        self.fails(1, *grid, "wall.geojson", "-m", "mcmd", says=["method mcmd knows none", "spline"])
+
+
 class BadInput(CliTest):
     def test_each_is_one_line_that_says_what_would_be_right(self):
         cases = {

@@ -109,7 +109,7 @@ double median(std::vector<double> values) {
 std::vector<std::string> CurveOptions::curve_methods() {
   std::vector<std::string> names;
   for (const auto& m : all_fill_methods()) {
-    if (m.name == "contours") continue;  // for lines, which cells kept at random are not
+    if (m.traits.for_contours) continue;  // cells kept at random are no lines
     names.push_back(m.name);
     for (const auto& p : m.presets)
       if (p.name == "paper") names.push_back(m.name + ":" + p.name);

@@ -2,6 +2,7 @@
 // A digital elevation model that may have holes, and what a reconstruction of it returns.
 
 #include <array>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -31,12 +32,17 @@ struct Spacing {
   bool operator==(const Spacing&) const = default;
 };
 
+/// Bits of Dem::breaks: a breakline passes between a cell and its neighbour in the east, the south.
+constexpr std::uint8_t break_east = 1, break_south = 2;
+
 /// Heights in metres, a mask and a georeference. Where `known` is 0, `z` means nothing.
 struct Dem {
   Raster<float> z;
   Mask known;
   GeoRef ref;
   Spacing spacing;
+  /// Where a surface may jump: break_east and break_south of each cell; empty: nowhere.
+  Mask breaks{};
 
   Size size() const { return z.size(); }
 };
@@ -59,7 +65,8 @@ struct Filled {
   std::vector<Figure> report{};
 };
 
-/// Throws std::invalid_argument unless z and known have the same size, of at least one cell.
+/// Throws std::invalid_argument unless z, known and breaks (when there are any) have the same size, of
+/// at least one cell.
 void check_shape(const Dem& dem);
 
 /// As check_shape, and at least one cell must be known.

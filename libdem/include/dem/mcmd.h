@@ -40,17 +40,24 @@ struct McmdOptions {
   double rt = 0;
   double rs = 0;
   std::uint64_t seed = 1;
+  /// Known cells are contour lines, and each has two behaviours: what lies uphill of it rises by the
+  /// slope to the next line above, what lies downhill falls by the slope to the next below.
+  bool two_sided = false;
 };
 std::vector<Field> fields(McmdOptions& options);
 
 /// Fills every unknown cell by the Morphologically Constrained Midpoint Displacement.
 /// Method:   [belhadj2007] algorithm 1 and equations 1 to 3. Departures: lattice of any size; the
 ///           default order, weights and subdivision (see McmdOptions); centres take both diagonals.
+///           two_sided, the paper's open problem (section 5): a contour cell looks for the nearest
+///           known cells above and below it, at most 48 cells away, and the unknown cells up to two
+///           cells off the line start from these two slopes. It is for contour lines alone and off
+///           by default, as most data are not.
 /// Needs:    at least one known cell.
 /// Gives:    a raster of the same size, all finite; known cells bit for bit. A corner that nothing
 ///           rises to takes the mean of the other corners.
 /// Exact on: constants, when I = I_bu = 0 and rs = 0. Not exact on planes.
-/// Cost:     O(cells); 5 bytes a cell beside the input (waves: 9), output included. Any number of
+/// Cost:     O(cells); 5 bytes a cell beside the input (waves: 9; two_sided: 50), output included. Any number of
 ///           threads gives the same bits.
 /// Throws:   std::invalid_argument, Cancelled.
 /// `kinds`:  empty, or one CellKind a cell: ridge and river cells use their own I and I_bu.

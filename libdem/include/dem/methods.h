@@ -25,6 +25,12 @@ struct Preset {
   Settings settings;
 };
 
+/// What sets a method apart from most.
+struct MethodTraits {
+  bool for_contours = false;        ///< its known cells must be contour lines
+  bool honours_breaklines = false;  ///< it lets the surface jump where Dem::breaks says so
+};
+
 struct FillMethod {
   std::string name;
   std::string summary;   ///< one line
@@ -35,6 +41,7 @@ struct FillMethod {
   /// Fills every unknown cell; known cells come back bit for bit.
   /// Throws std::invalid_argument for bad settings or when no cell is known, Cancelled.
   std::function<Filled(const Dem&, const Settings&, const Run&)> fill;
+  MethodTraits traits{};
 };
 
 /// How FieldInfo is read off a list of fields.
@@ -44,7 +51,7 @@ std::vector<FieldInfo> describe(const std::vector<Field>& fields);
 /// `Filled or Raster<float> (const Dem&, const Options&, const Run&)`.
 template <class Options, class Fill>
 FillMethod make_method(std::string name, std::string summary, std::string citation,
-                       std::vector<Preset> presets, Fill fill) {
+                       std::vector<Preset> presets, Fill fill, MethodTraits traits = {}) {
   Options defaults;
   return {std::move(name),
           std::move(summary),
@@ -55,7 +62,8 @@ FillMethod make_method(std::string name, std::string summary, std::string citati
             Options options;
             apply(settings, fields(options));
             return Filled{fill(dem, options, run)};
-          }};
+          },
+          traits};
 }
 
 /// The methods of this library. dem/baselines.h (target dem::io) has those of GDAL and OpenImageIO.

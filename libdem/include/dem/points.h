@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "dem/breaklines.h"
 #include "dem/dem.h"
 #include "dem/run.h"
 
@@ -52,9 +53,10 @@ struct OffCentre {
 };
 
 struct BinCounts {
-  std::size_t points = 0;      ///< all that came
-  std::size_t outside = 0;     ///< of these, not on the lattice
-  std::size_t combined = 0;    ///< of these, in a cell that others share
+  std::size_t points = 0;    ///< all that came
+  std::size_t outside = 0;   ///< of these, not on the lattice
+  std::size_t parted = 0;    ///< of these, parted from their cell's centre by a breakline: left out
+  std::size_t combined = 0;  ///< of these, in a cell that others share
   std::size_t duplicates = 0;  ///< of these, at the same place as another with another height
   std::size_t cells = 0;       ///< that became known
   std::size_t outliers = 0;    ///< cells that were taken for outliers
@@ -63,7 +65,7 @@ struct BinCounts {
 struct Binned {
   Dem dem;                            ///< known where there are points
   Raster<float> sigma;                ///< of each known cell; empty when no point had one
-  std::vector<OffCentre> off_centre;  ///< row by row
+  std::vector<OffCentre> off_centre;  ///< row by row; none beside a breakline
   BinCounts counts;
 };
 
@@ -71,8 +73,10 @@ struct Binned {
 /// cell of those stretches of the lattice where points are, and a buffer.
 class PointBins {
  public:
+  /// `lines`: no plane reaches across one, and a point that one parts from its cell's centre is left
+  /// out. The DEM has their breaks.
   /// Throws std::invalid_argument for a lattice without cells or a degenerate georeference.
-  explicit PointBins(Lattice lattice, const BinOptions& options = {});
+  explicit PointBins(Lattice lattice, const BinOptions& options = {}, Breaklines lines = {});
   ~PointBins();
   PointBins(PointBins&&) noexcept;
   PointBins& operator=(PointBins&&) noexcept;

@@ -1,10 +1,11 @@
 #pragma once
-// Polygons of vector files, in and out.
+// Polygons of vector files, in and out, and breaklines.
 
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "dem/breaklines.h"
 #include "dem/dem.h"
 #include "dem/holes.h"
 
@@ -28,6 +29,10 @@ class Polygons {
   struct Shapes;
   std::unique_ptr<Shapes> shapes_;
 };
+
+/// The lines and the outlines of polygons of all layers of a vector file, on a raster's lattice.
+/// Throws IoError as Polygons, and when there is neither.
+Breaklines read_breaklines(const std::string& path, const GeoRef& ref, Size size);
 
 /// Writes holes as polygons with their facts (hole_facts()) as attributes; the format follows the
 /// extension (.gpkg, .geojson, .shp ...). The path holds what it held before or the whole new file.

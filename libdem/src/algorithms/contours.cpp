@@ -8,7 +8,9 @@
 #include <limits>
 #include <stdexcept>
 
+#include "dem/breaklines.h"
 #include "dem/spline.h"
+#include "lie_together.h"
 #include "parallel.h"
 
 namespace dem {
@@ -18,6 +20,11 @@ constexpr float infinite = std::numeric_limits<float>::infinity();
 
 /// More levels than this are no contour lines but scattered elevations.
 constexpr std::size_t most_levels = 4096;
+
+/// Known cells are contour lines when they are fewer than this part of all, lie along lines, and at
+/// least this part of the unknown cells lies in areas of so many cells beside one level or two.
+constexpr double most_known = 0.75, least_between = 0.06;
+constexpr std::size_t smallest_area = 20;
 
 /// Cells of a line lie up to half a cell off it: noise of their elevation, over the springs' scale.
 constexpr double line_noise = 0.7;
@@ -99,7 +106,7 @@ class Map {
           ++area.cells;
           for (const Step& s : around) {
             const int nx = x + s.dx, ny = y + s.dy;
-            if (!area_of_.contains(nx, ny)) continue;
+            if (!area_of_.contains(nx, ny) || is_parted(x, y, s)) continue;
             if (dem_.known(nx, ny)) {
               area.see(dem_.z(nx, ny));
             } else if (s.length == 5 && area_of_(nx, ny) < 0) {
@@ -199,10 +206,25 @@ class Map {
       }
   }
 
+  /// Whether a breakline passes between a cell and its neighbour.
+  bool is_parted(int x, int y, const Step& s) const {
+    return is_broken(dem_.breaks, std::min(x, x + s.dx), std::min(y, y + s.dy), 1 + std::abs(s.dx),
+                     1 + std::abs(s.dy));
+  }
+
   const Dem& dem_;
   Raster<int> area_of_;
   std::vector<Area> areas_;
 };
+
+bool are_contour_lines(const Dem& dem, const std::vector<Area>& areas) {
+  const double cells = double(dem.size().cells()), known = double(count(dem.known));
+  if (known > most_known * cells || !lie_together(dem.known)) return false;
+  double between = 0;
+  for (const Area& a : areas)
+    if (a.cells >= smallest_area && (a.levels == 1 || a.levels == 2)) between += double(a.cells);
+  return between >= least_between * (cells - known);
+}
 
 /// How far a flank of this slope (metres a cell) rises at distance d beyond its line, when it rounds
 /// off to level ground at distance `widest`: a parabola, cut at `most`. Distances in fifths.
@@ -227,12 +249,14 @@ ContourBounds contour_bounds(const Dem& dem, const ContourOptions& options, cons
   check_shape(dem);
   check_options(options);
   const Size size = dem.size();
-  ContourBounds out{Raster<float>(size, -infinite), Raster<float>(size, infinite), 0, 0, 0};
+  ContourBounds out{false, Raster<float>(size, -infinite), Raster<float>(size, infinite)};
   const std::vector<float> levels = levels_of(dem);
   if (levels.size() < 2) return out;
   Map map(dem);
   run.report(0, "areas between contour lines");
   map.find_areas();
+  if (!are_contour_lines(dem, map.areas())) return out;
+  out.lines = true;
   run.report(0.3, "areas between contour lines");
   const Raster<int> to_low = map.distances(true), to_high = map.distances(false);
   map.look_beyond(to_low, to_high);
@@ -318,8 +342,10 @@ double figure(const Filled& filled, std::string_view name) {
 /// The surface through the known cells of `dem` and within bounds. `nugget`: noise of those cells.
 Filled fill_within(const Dem& dem, const ContourBounds& bounds, double nugget,
                    const ContourOptions& options, const Run& run) {
-  const double parts = options.rounds + 1.;
+  const double parts = bounds.lines ? options.rounds + 1. : 1;
   Filled filled = fill_spline(dem, SplineOptions{}, run.part(0, 1 / parts));
+  filled.report.push_back({"contour_lines", bounds.lines ? 1. : 0., ""});
+  if (!bounds.lines) return filled;
 
   // The springs of the first solve. Lines pull; cells held on a bound are met exactly.
   SplineOptions springs;

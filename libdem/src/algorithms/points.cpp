@@ -213,21 +213,42 @@ std::size_t reject_outliers(Dem& dem, double times, const Run& run) {
   return rejected;
 }
 
+/// The cells of a window, whose first is `from`, that breaks part from a cell; empty when none is broken.
+Mask cells_beyond(const Mask& breaks, Cell cell, Cell from, Size size) {
+  if (!is_broken(breaks, from.col, from.row, size.cols, size.rows)) return {};
+  Mask known(size), within(size);
+  for (int y = 0; y < size.rows; ++y)
+    std::copy_n(breaks.row(from.row + y).begin() + from.col, size.cols, within.row(y).begin());
+  known(cell.col - from.col, cell.row - from.row) = 1;
+  return cells_closed_off(known, within);
+}
+
+/// Whether cubic convolution at a point would look across a break.
+bool looks_across(const Mask& breaks, const OffCentre& p) {
+  if (breaks.empty()) return false;
+  const int x0 = std::max(0, p.col - (p.dx < 0 ? 2 : 1)),
+            y0 = std::max(0, p.row - (p.dy < 0 ? 2 : 1));
+  return is_broken(breaks, x0, y0, std::min(4, breaks.cols() - x0),
+                   std::min(4, breaks.rows() - y0));
+}
+
 }  // namespace
 
 struct PointBins::Bins {
   Lattice lattice;
   BinOptions options;
+  Breaklines lines;
   ToCells to_cells;
   int band_rows;
   std::vector<std::vector<Bin>> bands;           // empty until a point falls there
   std::vector<std::vector<Record>> band_points;  // of the median
   std::vector<std::size_t> band_duplicates;
-  std::size_t points = 0, outside = 0;
+  std::size_t points = 0, outside = 0, parted = 0;
   bool has_sigma = false;
   std::vector<Record> sorted;  // buffer
 
-  Bins(Lattice l, const BinOptions& o) : lattice(std::move(l)), options(o), to_cells(lattice.ref) {
+  Bins(Lattice l, const BinOptions& o, Breaklines breaklines)
+      : lattice(std::move(l)), options(o), lines(std::move(breaklines)), to_cells(lattice.ref) {
     const Size size = lattice.size;
     if (size.cols < 1 || size.rows < 1)
       throw std::invalid_argument(
@@ -259,6 +280,14 @@ struct PointBins::Bins {
                                                  offset_in_cell(v, row), p.z[i], weight_of(p, i)});
   }
 
+  /// Whether a breakline passes between a point and its cell's centre.
+  bool is_parted(std::uint32_t band, const Record& r) const {
+    if (lines.empty()) return false;
+    const auto cols = std::uint32_t(lattice.size.cols);
+    return lines.between(int(r.cell % cols), int(band) * band_rows + int(r.cell / cols),
+                         double(r.dx), double(r.dy));
+  }
+
   void add_part(const Points& points, std::size_t begin, std::size_t end);
   void bin_band(std::size_t band, std::span<const Record> records);
   Centroid centroid(const Bin& bin) const;
@@ -279,15 +308,25 @@ void PointBins::Bins::add_part(const Points& p, std::size_t begin, std::size_t e
   const int chunks = int((end - begin + chunk_points - 1) / chunk_points);
   // at[chunk][band]: first how many, then where the chunk's records of this band go.
   std::vector<std::uint32_t> at(std::size_t(chunks) * bands_n);
+  std::vector<std::size_t> parted_in(static_cast<std::size_t>(chunks));
   const auto each_of = [&](int chunk, const auto& each) {
     const std::size_t from = begin + std::size_t(chunk) * chunk_points;
+    std::size_t parted_here = 0;
     for (std::size_t i = from; i < std::min(end, from + chunk_points); ++i)
-      if (const auto found = locate(p, i))
-        each(std::size_t(chunk) * bands_n + found->first, found->second);
+      if (const auto found = locate(p, i)) {
+        if (is_parted(found->first, found->second))
+          ++parted_here;
+        else
+          each(std::size_t(chunk) * bands_n + found->first, found->second);
+      }
+    parted_in[std::size_t(chunk)] = parted_here;
   };
   parallel_for(0, chunks, 1, [&](int chunk) {
     each_of(chunk, [&](std::size_t slot, const Record&) { ++at[slot]; });
   });
+  std::size_t parted_now = 0;
+  for (const std::size_t n : parted_in) parted_now += n;
+  parted += parted_now;
   std::vector<std::uint32_t> first(bands_n + 1);
   std::uint32_t sum = 0;
   for (std::size_t band = 0; band < bands_n; ++band) {
@@ -296,7 +335,7 @@ void PointBins::Bins::add_part(const Points& p, std::size_t begin, std::size_t e
       sum += std::exchange(at[std::size_t(chunk) * bands_n + band], sum);
   }
   first[bands_n] = sum;
-  outside += end - begin - sum;
+  outside += end - begin - sum - parted_now;
   if (sorted.size() < sum) sorted.resize(std::min(buffer_points, p.size()));
   parallel_for(0, chunks, 1, [&](int chunk) {
     each_of(chunk, [&](std::size_t slot, const Record& record) { sorted[at[slot]++] = record; });
@@ -375,9 +414,14 @@ std::pair<double, double> PointBins::Bins::slope_at(const Mask& known, int col, 
   for (int r = radius;; r *= 2) {
     SlopeFit fit;
     int found = 0;
-    for (int y = std::max(0, row - r); y <= std::min(lattice.size.rows - 1, row + r); ++y)
-      for (int x = std::max(0, col - r); x <= std::min(lattice.size.cols - 1, col + r); ++x) {
+    const int x0 = std::max(0, col - r), x1 = std::min(lattice.size.cols - 1, col + r);
+    const int y0 = std::max(0, row - r), y1 = std::min(lattice.size.rows - 1, row + r);
+    const Mask beyond =
+        cells_beyond(lines.breaks(), {col, row}, {x0, y0}, {x1 - x0 + 1, y1 - y0 + 1});
+    for (int y = y0; y <= y1; ++y)
+      for (int x = x0; x <= x1; ++x) {
         if (!known(x, y) || (x == col && y == row)) continue;
+        if (!beyond.empty() && beyond(x - x0, y - y0)) continue;
         const Centroid c = centroid(bin_at(x, y));
         fit.add(x - col + c.dx - own.dx, y - row + c.dy - own.dy, c.z - own.z);
         ++found;
@@ -438,7 +482,8 @@ void PointBins::Bins::move_to_centres(Binned& out, const Run& run) const {
         if (has_sigma) out.sigma(col, row) = 1 / std::sqrt(bin.weight);
         const Centroid c = centroid(bin);
         if (c.dx == 0 && c.dy == 0) return;
-        off_centre[std::size_t(band)].push_back({col, row, float(c.dx), float(c.dy), float(c.z)});
+        const OffCentre off{col, row, float(c.dx), float(c.dy), float(c.z)};
+        if (!looks_across(lines.breaks(), off)) off_centre[std::size_t(band)].push_back(off);
         if (!options.plane) return;
         const auto [slope_x, slope_y] = slope_at(out.dem.known, col, row, c, radius);
         out.dem.z(col, row) = float(c.z - slope_x * c.dx - slope_y * c.dy);
@@ -449,8 +494,8 @@ void PointBins::Bins::move_to_centres(Binned& out, const Run& run) const {
     out.off_centre.insert(out.off_centre.end(), part.begin(), part.end());
 }
 
-PointBins::PointBins(Lattice lattice, const BinOptions& options)
-    : bins_(std::make_unique<Bins>(std::move(lattice), options)) {}
+PointBins::PointBins(Lattice lattice, const BinOptions& options, Breaklines lines)
+    : bins_(std::make_unique<Bins>(std::move(lattice), options, std::move(lines))) {}
 PointBins::~PointBins() = default;
 PointBins::PointBins(PointBins&&) noexcept = default;
 PointBins& PointBins::operator=(PointBins&&) noexcept = default;
@@ -475,6 +520,8 @@ Binned PointBins::finish(const Run& run) const {
   Binned out{{Raster<float>(size), Mask(size), b.lattice.ref, b.lattice.spacing}, {}, {}, {}};
   out.counts.points = b.points;
   out.counts.outside = b.outside;
+  out.counts.parted = b.parted;
+  out.dem.breaks = b.lines.breaks();
   with_threads(run.threads, [&] {
     b.combine(out, run.part(0, 0.2));
     if (b.options.outliers > 0)

@@ -49,18 +49,9 @@ std::array<double, 6> corner_transform(const GeoRef& ref) {
   return at;
 }
 
-}  // namespace
-
-struct Polygons::Shapes {
-  struct Shape {
-    GeometryPtr geometry;
-    OGREnvelope extent;
-  };
-  std::vector<Shape> all;
-};
-
-Polygons::Polygons(const std::string& path, const GeoRef& ref)
-    : shapes_(std::make_unique<Shapes>()) {
+/// Calls each(geometry) for every geometry of a vector file, in columns and rows of a raster.
+template <class Each>
+void for_each_geometry(const std::string& path, const GeoRef& ref, const Each& each) {
   GdalErrors errors;
   const DatasetPtr dataset(GDALOpenEx(path.c_str(),
                                       GDAL_OF_VECTOR | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR,
@@ -91,18 +82,60 @@ Polygons::Polygons(const std::string& path, const GeoRef& ref)
     while (OGRFeatureH feature = OGR_L_GetNextFeature(layer)) {
       GeometryPtr geometry(OGR_F_StealGeometry(feature));
       OGR_F_Destroy(feature);
-      if (!geometry || OGR_G_GetDimension(geometry.get()) != 2) continue;
+      if (!geometry) continue;
       if (transform &&
           OGRGeometry::FromHandle(geometry.get())->transform(transform.get()) != OGRERR_NONE)
         errors.fail(path, "its coordinates cannot be turned into the raster's");
       to_cells(geometry.get(), inverse);
-      Shapes::Shape shape{std::move(geometry), {}};
-      OGR_G_GetEnvelope(shape.geometry.get(), &shape.extent);
-      shapes_->all.push_back(std::move(shape));
+      each(std::move(geometry));
     }
   }
   if (errors.any()) errors.fail(path, "cannot be read");
+}
+
+/// Adds the lines of a geometry and of its parts.
+void add_lines(OGRGeometryH geometry, std::vector<Breakline>& lines) {
+  for (int i = 0; i < OGR_G_GetGeometryCount(geometry); ++i)
+    add_lines(OGR_G_GetGeometryRef(geometry, i), lines);
+  const int n = OGR_G_GetPointCount(geometry);
+  if (n < 2) return;
+  Breakline line;
+  for (int i = 0; i < n; ++i) {  // from the corner of the first cell to its centre
+    line.col.push_back(OGR_G_GetX(geometry, i) - 0.5);
+    line.row.push_back(OGR_G_GetY(geometry, i) - 0.5);
+  }
+  lines.push_back(std::move(line));
+}
+
+}  // namespace
+
+struct Polygons::Shapes {
+  struct Shape {
+    GeometryPtr geometry;
+    OGREnvelope extent;
+  };
+  std::vector<Shape> all;
+};
+
+Polygons::Polygons(const std::string& path, const GeoRef& ref)
+    : shapes_(std::make_unique<Shapes>()) {
+  for_each_geometry(path, ref, [&](GeometryPtr geometry) {
+    if (OGR_G_GetDimension(geometry.get()) != 2) return;
+    Shapes::Shape shape{std::move(geometry), {}};
+    OGR_G_GetEnvelope(shape.geometry.get(), &shape.extent);
+    shapes_->all.push_back(std::move(shape));
+  });
   if (shapes_->all.empty()) throw IoError(path, "holds no polygon");
+}
+
+Breaklines read_breaklines(const std::string& path, const GeoRef& ref, Size size) {
+  std::vector<Breakline> lines;
+  for_each_geometry(path, ref, [&](const GeometryPtr& geometry) {
+    const GeometryPtr straight(OGR_G_GetLinearGeometry(geometry.get(), 0, nullptr));
+    add_lines(straight.get(), lines);
+  });
+  if (lines.empty()) throw IoError(path, "holds no line and no polygon");
+  return {lines, size};
 }
 
 Polygons::~Polygons() = default;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "contour_sides.h"
 #include "midpoint.h"
 #include "row_kernels.h"
 
@@ -72,6 +73,10 @@ Bend bend(const McmdOptions& o) { return {o.I, o.I_ridge, o.I_river}; }
 Pull pull(const McmdOptions& o) {
   return {{o.I_bu, o.I_bu_ridge, o.I_bu_river}, o.weight_exponent};
 }
+McmdOptions one_sided(McmdOptions o) {
+  o.two_sided = false;
+  return o;
+}
 bool bends(const McmdOptions& o) { return bend(o) != Bend{} || pull(o).bend != Bend{}; }
 
 }  // namespace
@@ -99,6 +104,8 @@ std::vector<Field> fields(McmdOptions& o) {
       bend_field("I_bu_river", o.I_bu_river, "I_bu where the child is a river cell"),
   };
   add_noise_fields(list, o);
+  list.emplace_back("two_sided", o.two_sided,
+                    "known cells are contour lines: up and down from each, the slope to the next");
   return list;
 }
 
@@ -129,6 +136,11 @@ std::vector<Field> fields(MdiOptions& o) {
 
 Raster<float> fill_mcmd(const Dem& dem, const McmdOptions& o, const Run& run,
                         const Raster<CellKind>& kinds) {
+  if (o.two_sided) {
+    check_fillable(dem);
+    return fill_mcmd(with_contour_sides(dem, run.part(0, 0.8)), one_sided(o), run.part(0.8, 1),
+                     kinds);
+  }
   if (o.order == UpOrder::waves) {
     const Dem carried = carry_up_mcmd(dem, o, run.part(0, 0.7), kinds);
     const auto fill =
@@ -147,6 +159,9 @@ Dem carry_up_mcmd(const Dem& dem, const McmdOptions& o, const Run& run,
   check_options(o);
   check_fillable(dem);
   check_kinds(dem, kinds);
+  if (o.two_sided)
+    return carry_up_mcmd(with_contour_sides(dem, run.part(0, 0.8)), one_sided(o), run.part(0.8, 1),
+                         kinds);
   const auto fill = midpoint(dem, kinds, o.subdivision, o.datum_m, bends(o), run);
   return o.order == UpOrder::levels ? carry_up_by_levels(fill, pull(o))
                                     : carry_up_in_waves(fill, pull(o), {});

@@ -12,6 +12,7 @@ constexpr int degree = 6;             // of the Chebyshev smoother, before and a
 constexpr double smoothed_part = 40;  // it damps the eigenvalues above largest / smoothed_part
 constexpr int coarsest_cells = 100;
 constexpr double pin_cap = 1000;
+constexpr double leak = 0.01;  // of the diagonal, beside breaklines of coarse grids
 
 // ---- Stencil kernels
 
@@ -157,10 +158,111 @@ Halving halving(const Level& fine, const Level& coarse) {
   return {coarse.hx > fine.hx, coarse.hy > fine.hy};
 }
 
+// ---- Between grids with breaklines: an odd cell takes from those even neighbours that no line
+// parts it from; where that is one side only, along the straight line through its two even cells.
+//
+//     X - 1     X   |   X + 1
+//        o - - o - x|- o          x = 3/2 X - 1/2 (X - 1)
+
+/// Whether neighbouring cells along a row (a column) hang together; those off the grid do.
+bool open(const Mask& breaks, int x, int y, std::uint8_t edge) {
+  return !breaks.contains(x, y) || !(breaks(x, y) & edge);
+}
+
+/// What an odd cell takes from the even cells 3 and 1 before it, and 1 and 3 after it.
+struct Shares {
+  float part[4];
+};
+constexpr Shares even_cell{{0, 1, 0, 0}};
+
+/// `is_open(k)`: whether cells k and k + 1 hang together, counted from the odd cell.
+template <class Open>
+Shares shares(const Open& is_open) {
+  const bool before = is_open(-1), after = is_open(0);
+  if (before && after) return {{0, 0.5f, 0.5f, 0}};
+  if (before)
+    return is_open(-3) && is_open(-2) ? Shares{{-0.5f, 1.5f, 0, 0}} : Shares{{0, 1, 0, 0}};
+  if (after) return is_open(1) && is_open(2) ? Shares{{0, 0, 1.5f, -0.5f}} : Shares{{0, 0, 1, 0}};
+  return {{0, 0, 0, 0}};
+}
+
+Shares shares_along_row(const Level& fine, int x, int y) {
+  return shares([&](int k) {
+    const bool inside = x + k >= 0 && x + k + 1 <= fine.size.cols;
+    return (inside || k == -1 || k == 0) && open(fine.breaks, x + k, y, break_east);
+  });
+}
+Shares shares_along_column(const Level& fine, int x, int y) {
+  return shares([&](int k) {
+    const bool inside = y + k >= 0 && y + k + 1 <= fine.size.rows;
+    return (inside || k == -1 || k == 0) && open(fine.breaks, x, y + k, break_south);
+  });
+}
+
+/// The interpolation of coarse rows to the fine row y.
+void interpolate_broken(const Level& fine, Halving half, int y, const Grid<float>& coarse,
+                        std::vector<float>& out) {
+  const int coarse_cols = coarse.size().cols, coarse_rows = coarse.size().rows;
+  const int step = half.x ? 2 : 1;
+  out.assign(std::size_t(2 * coarse_cols), 0.f);
+  const bool odd = half.y && y % 2 == 1;
+  const float* rows[4];
+  for (int k = 0; k < 4; ++k)
+    rows[k] = coarse.row(std::clamp((half.y ? y / 2 : y) - 1 + k, 0, coarse_rows - 1));
+  for (int X = 0; X < coarse_cols; ++X) {
+    const Shares s = odd ? shares_along_column(fine, step * X, y) : even_cell;
+    float sum = 0;
+    for (int k = 0; k < 4; ++k) sum += s.part[k] * rows[k][X];
+    out[std::size_t(step * X)] = sum;
+  }
+  if (!half.x) return;
+  for (int x = 1; x < fine.size.cols; x += 2) {
+    const Shares s = shares_along_row(fine, x, y);
+    float sum = 0;
+    for (int k = 0; k < 4; ++k) {
+      const int at = x - 3 + 2 * k;
+      if (s.part[k] != 0) sum += s.part[k] * out[std::size_t(at)];
+    }
+    out[std::size_t(x)] = sum;
+  }
+}
+
+/// Coarse rows [Y0, Y1) of the transposed interpolation of the fine rows that fine_row(y, row) makes.
+template <class FineRow>
+void restrict_broken(const Level& level, Halving half, int Y0, int Y1, Grid<float>& coarse,
+                     const FineRow& fine_row) {
+  const Size fine = level.size;
+  const int coarse_cols = coarse.size().cols, step = half.x ? 2 : 1;
+  std::vector<float> buffer(std::size_t(Grid<float>::stride_for(2 * coarse_cols)));
+  float* row = buffer.data() + Grid<float>::margin;
+  for (int Y = Y0; Y < Y1; ++Y) std::fill_n(coarse.row(Y), coarse_cols, 0.f);
+  const int y0 = half.y ? 2 * Y0 - 3 : Y0, y1 = half.y ? 2 * Y1 + 2 : Y1;
+  for (int y = std::max(0, y0); y < std::min(fine.rows, y1); ++y) {
+    fine_row(y, row);
+    std::fill(row + fine.cols, row + 2 * coarse_cols, 0.f);
+    if (half.x)
+      for (int x = 1; x < fine.cols; x += 2) {
+        const Shares s = shares_along_row(level, x, y);
+        for (int k = 0; k < 4; ++k)
+          if (s.part[k] != 0) row[x - 3 + 2 * k] += s.part[k] * row[x];
+      }
+    const bool odd = half.y && y % 2 == 1;
+    for (int X = 0; X < coarse_cols; ++X) {
+      const Shares s = odd ? shares_along_column(level, step * X, y) : even_cell;
+      for (int k = 0; k < 4; ++k) {
+        const int Y = (half.y ? y / 2 : y) - 1 + k;
+        if (s.part[k] != 0 && Y >= Y0 && Y < Y1) coarse.row(Y)[X] += s.part[k] * row[step * X];
+      }
+    }
+  }
+}
+
 /// Coarse rows [Y0, Y1) of P^T times the fine rows that `fine_row(y, row)` makes.
 template <class FineRow>
-void restrict_band(Size fine, Halving half, int Y0, int Y1, Grid<float>& coarse,
+void restrict_band(const Level& level, Halving half, int Y0, int Y1, Grid<float>& coarse,
                    const FineRow& fine_row) {
+  if (!level.breaks.empty()) return restrict_broken(level, half, Y0, Y1, coarse, fine_row);
+  const Size fine = level.size;
   const std::size_t stride = std::size_t(Grid<float>::stride_for(fine.cols));
   std::vector<float> buffers(3 * stride);
   float* here = buffers.data() + Grid<float>::margin;
@@ -268,6 +370,11 @@ void smooth_band(const Level& level, const std::vector<Step>& steps, int first,
         weighted_chebyshev_row(level.A.row(y), now.data(), before, b.row(y), level.dinv.row(y),
                                level.w.row(y), step.a, step.c, span, cols, next);
     }
+    const float* w = level.w.empty() ? zero : level.w.row(y);
+    for_cut_cells(level, y, now.data(), [&](int x, float Au) {
+      const float here = now[3][x], r = b.row(y)[x] - Au - w[x] * here;
+      next[x] = here + step.a * (here - before[x]) + step.c * level.dinv.row(y)[x] * r;
+    });
   };
   for (int y = y0 - 3 * stages; y < y1 + 3 * stages; ++y)
     for (int k = 0; k <= stages; ++k) make_row(k, y - 3 * k);
@@ -311,6 +418,12 @@ DEM_CLONES void residual_row(const RowStencil<double>& A, const double* const* x
   keep_free(dinv, span, out);
 }
 
+double Level::entry(int x, int y, int p) const {
+  if (const CutCell* cut = cuts.find(x, y)) return cut->entry[std::size_t(p)];
+  const auto [dx, dy] = diamond[std::size_t(p)];
+  return A.at(x, y, dx, dy);
+}
+
 // ---- The coarsest grid
 
 BandedFactor::BandedFactor(const Level& level)
@@ -324,10 +437,11 @@ BandedFactor::BandedFactor(const Level& level)
       at(i, i) = 1;
       continue;
     }
-    for (const auto [dx, dy] : diamond) {
+    for (int p = 0; p < diamond_points; ++p) {
+      const auto [dx, dy] = diamond[std::size_t(p)];
       const int j = i + dy * cols + dx;
       if (x + dx < 0 || x + dx >= cols || j < 0 || j > i || fixed_[std::size_t(j)]) continue;
-      at(i, j) = level.A.at(x, y, dx, dy);
+      at(i, j) = level.entry(x, y, p);
     }
     if (!level.w.empty()) at(i, i) += double(level.w.row(y)[x]);
   }
@@ -361,12 +475,16 @@ void BandedFactor::solve(const Grid<float>& b, Grid<float>& x) const {
 namespace {
 
 /// The part of a spring's own cell in A, for every column of a row.
-void diagonal_row(const RowStencil<float>& A, int cols, std::vector<float>& out) {
+void diagonal_row(const Level& level, int y, std::vector<float>& out) {
   constexpr int centre = diamond_points / 2;
+  const RowStencil<float>& A = level.A.row(y);
+  const int cols = level.size.cols;
   out.assign(std::size_t(cols), A.mid[3][0]);
   const int right = right_begin(cols);
   for (int l = 0; l < 4 && l < cols; ++l) out[std::size_t(l)] = A.left[centre][l];
   for (int l = 0; l < 4 && right + l < cols; ++l) out[std::size_t(right + l)] = A.right[centre][l];
+  for (const CutCell& cut : level.cuts.row(y))
+    out[std::size_t(cut.col)] = float(cut.entry[std::size_t(centre)]);
 }
 
 /// Halves the axes that have room for it. On long cells, the axis with the shorter side first.
@@ -400,17 +518,19 @@ void fine_weight_row(const Level& fine, int y, float* row) {
 }
 
 template <class FineRow>
-Grid<float> restricted(Size fine, Size coarse, Halving half, const FineRow& fine_row) {
+Grid<float> restricted(const Level& fine, Size coarse, Halving half, const FineRow& fine_row) {
   Grid<float> out(coarse);
   in_bands(coarse.rows, coarse.cols,
            [&](int Y0, int Y1) { restrict_band(fine, half, Y0, Y1, out, fine_row); });
   return out;
 }
 
-Level make_finest(const Springs& springs, const Mask& free, Grid<float> w) {
+Level make_finest(const Springs& springs, const Mask& free, Grid<float> w, const Mask& breaks) {
   Level fine;
   fine.size = free.size();
   fine.A = Stencil(springs, fine.size);
+  fine.breaks = breaks;
+  fine.cuts = CutCells(springs, breaks);
   fine.w = std::move(w);
   fine.dinv = Grid<float>(fine.size);
   fine.u = Grid<float>(fine.size);
@@ -418,7 +538,7 @@ Level make_finest(const Springs& springs, const Mask& free, Grid<float> w) {
   std::vector<float> diagonal;
   std::vector<Span> parts;
   for (int y = 0; y < fine.size.rows; ++y) {
-    diagonal_row(fine.A.row(y), fine.size.cols, diagonal);
+    diagonal_row(fine, y, diagonal);
     const auto is_free = free.row(y);
     float* dinv = fine.dinv.row(y);
     parts.clear();
@@ -442,7 +562,10 @@ Level make_coarse(const Level& fine, Halving half, const Springs& springs) {
                  half.y ? fine.size.rows / 2 + 1 : fine.size.rows};
   coarse.hx = half.x ? 2 * fine.hx : fine.hx;
   coarse.hy = half.y ? 2 * fine.hy : fine.hy;
-  coarse.A = Stencil(coarsen(springs, coarse.hx, coarse.hy), coarse.size);
+  const Springs coarse_springs = coarsen(springs, coarse.hx, coarse.hy);
+  coarse.A = Stencil(coarse_springs, coarse.size);
+  coarse.breaks = coarser_breaks(fine.breaks, coarse.size, half.x, half.y);
+  coarse.cuts = CutCells(coarse_springs, coarse.breaks);
   for (Grid<float>* grid : {&coarse.w, &coarse.dinv, &coarse.b, &coarse.u, &coarse.s})
     *grid = Grid<float>(coarse.size);
   for (int Y = 0; Y < coarse.size.rows; ++Y)
@@ -454,22 +577,30 @@ Level make_coarse(const Level& fine, Halving half, const Springs& springs) {
 void pin(Level& level, const Pins& pins) {
   std::vector<float> diagonal;
   for (int y = 0; y < level.size.rows; ++y) {
-    diagonal_row(level.A.row(y), level.size.cols, diagonal);
+    diagonal_row(level, y, diagonal);
     for (const Span span : level.spans.row(y))
       for (int x = span.begin; x < span.end; ++x) {
         const float d = diagonal[std::size_t(x)];
-        float w = std::min(pins.count.row(y)[x], float(pin_cap)) * d;
-        if (!pins.weight.empty()) w = std::min(w, pins.weight.row(y)[x]);
+        float w = std::clamp(pins.count.row(y)[x], 0.f, float(pin_cap)) * d;
+        if (!pins.weight.empty()) w = std::clamp(pins.weight.row(y)[x], 0.f, w);
         level.w.row(y)[x] = w;
         level.dinv.row(y)[x] = d + w > 0 ? 1 / (d + w) : 0;
       }
+    // A part that breaklines close off on this grid alone may hold no data.
+    for (const CutCell& cut : level.cuts.row(y)) {
+      const float d = diagonal[std::size_t(cut.col)];
+      float& w = level.w.row(y)[cut.col];
+      w += float(leak) * d;
+      if (level.dinv.row(y)[cut.col] != 0) level.dinv.row(y)[cut.col] = 1 / (d + w);
+    }
   }
 }
 
 }  // namespace
 
-Multigrid::Multigrid(const Springs& springs, double X, const Mask& free, Grid<float> w) {
-  levels_.push_back(make_finest(springs, free, std::move(w)));
+Multigrid::Multigrid(const Springs& springs, double X, const Mask& free, Grid<float> w,
+                     const Mask& breaks) {
+  levels_.push_back(make_finest(springs, free, std::move(w), breaks));
   const bool weighted = !levels_.front().w.empty();
   Pins pins;
   while (levels_.back().size.cells() > coarsest_cells) {
@@ -479,7 +610,7 @@ Multigrid::Multigrid(const Springs& springs, double X, const Mask& free, Grid<fl
     Level coarse = make_coarse(fine, half, springs);
     const bool finest = levels_.size() == 1;
     const auto pins_row = [&](const Grid<float>& pins_grid, auto of_finest) {
-      return restricted(fine.size, coarse.size, half, [&](int y, float* row) {
+      return restricted(fine, coarse.size, half, [&](int y, float* row) {
         if (finest)
           of_finest(fine, y, row);
         else
@@ -493,7 +624,8 @@ Multigrid::Multigrid(const Springs& springs, double X, const Mask& free, Grid<fl
     levels_.push_back(std::move(coarse));
   }
   for (const Level& level : levels_)
-    steps_.push_back(chebyshev_steps(1.05 * level.A.largest_eigenvalue()));
+    steps_.push_back(chebyshev_steps(
+        std::max(1.05 * level.A.largest_eigenvalue(), level.cuts.largest_eigenvalue())));
   coarsest_ = BandedFactor(levels_.back());
 }
 
@@ -522,12 +654,15 @@ void Multigrid::cycle(std::size_t l, const Grid<float>& b) {
   in_bands(coarse.size.rows, coarse.size.cols, [&](int Y0, int Y1) {
     const std::vector<float> zeros(static_cast<std::size_t>(Grid<float>::stride_for(cols)));
     const float* zero = zeros.data() + Grid<float>::margin;
-    restrict_band(fine.size, half, Y0, Y1, coarse.b, [&](int y, float* row) {
+    restrict_band(fine, half, Y0, Y1, coarse.b, [&](int y, float* row) {
       clear_gaps(row, fine.spans.row(y), cols);
       const auto around = rows_around(fine.u, y, zero);
       for (const Span span : fine.spans.row(y))
         free_residual_row(fine.A.row(y), around.data(), b.row(y), fine.dinv.row(y),
                           fine.w.empty() ? nullptr : fine.w.row(y), span, cols, row);
+      const float* w = fine.w.empty() ? zero : fine.w.row(y);
+      for_cut_cells(fine, y, around.data(),
+                    [&](int x, float Au) { row[x] = b.row(y)[x] - Au - w[x] * fine.u.row(y)[x]; });
     });
   });
 
@@ -537,6 +672,12 @@ void Multigrid::cycle(std::size_t l, const Grid<float>& b) {
   in_bands(rows, cols, [&](int y0, int y1) {
     std::vector<float> between(std::size_t(Grid<float>::stride_for(coarse.size.cols)));
     smooth_band(fine, steps, 0, b, y0, y1, fine.s, [&](int y, float* row) {
+      if (!fine.breaks.empty()) {
+        interpolate_broken(fine, half, y, coarse.s, between);
+        for (const Span span : fine.spans.row(y))
+          copy_row(between.data(), fine.u.row(y), fine.dinv.row(y), span.begin, span.end, row);
+        return;
+      }
       const float* correction = coarse.s.row(half.y ? y / 2 : y);
       if (half.y && y % 2 == 1) {
         mean_row(correction, coarse.s.row(y / 2 + 1), coarse.size.cols, between.data());

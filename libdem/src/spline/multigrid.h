@@ -5,6 +5,7 @@
 #include <array>
 #include <vector>
 
+#include "cuts.h"
 #include "grid.h"
 #include "springs.h"
 
@@ -15,10 +16,15 @@ struct Level {
   Size size;
   double hx = 1, hy = 1;  ///< size of a cell in cells of the finest grid
   Stencil A;
+  Mask breaks;       ///< as Dem::breaks; empty: none
+  CutCells cuts;     ///< where A is another than the stencil's
   Grid<float> w;     ///< weight of the data at each cell; empty: no cell has one
   Grid<float> dinv;  ///< 1 / (A's diagonal + w); 0 at cells that are fixed
   Spans spans;
   Grid<float> b, u, s;  ///< right-hand side (not on the finest grid), two iterates
+
+  /// The entry of A between cells (x, y) and (x, y) + diamond[p].
+  double entry(int x, int y, int p) const;
 };
 
 /// The dense end of the hierarchy: a banded Cholesky factor, rows of the lower triangle.
@@ -53,8 +59,10 @@ struct Step {
 class Multigrid {
  public:
   /// `free` tells where the finest grid has unknowns. `w`: data weights of its cells, or empty.
-  /// `X` is (dy / dx)^2: on long cells one axis is coarsened before the other.
-  Multigrid(const Springs& springs, double X, const Mask& free, Grid<float> w);
+  /// `X` is (dy / dx)^2: on long cells one axis is coarsened before the other. `breaks`: as
+  /// Dem::breaks; springs and interpolation between grids are cut there.
+  Multigrid(const Springs& springs, double X, const Mask& free, Grid<float> w,
+            const Mask& breaks = {});
 
   const Level& finest() const { return levels_.front(); }
   int levels() const { return int(levels_.size()); }
@@ -80,6 +88,18 @@ std::array<const T*, 7> rows_around(const Grid<T>& grid, int y, const T* zero) {
     rows[std::size_t(dy + 3)] = inside ? grid.row(y + dy) : zero;
   }
   return rows;
+}
+
+/// Calls each(x, (A u)(x)) for the free cells of a row whose springs are cut; `u`: rows_around it.
+template <class T, class Each>
+void for_cut_cells(const Level& level, int y, const T* const* u, const Each& each) {
+  for (const CutCell& cell : level.cuts.row(y)) {
+    if (level.dinv.row(y)[cell.col] == 0) continue;
+    T sum = 0;
+    for (std::size_t p = 0; p < std::size_t(diamond_points); ++p)
+      sum += T(cell.entry[p]) * u[diamond[p].dy + 3][cell.col + diamond[p].dx];
+    each(cell.col, sum);
+  }
 }
 
 /// out = (A u + w u) where dinv is not 0, else 0; on one span. `w` may be null.

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "dem/breaklines.h"
 #include "dem/mcmd.h"
 #include "parallel.h"
 
@@ -30,23 +31,26 @@ struct Mean {
 };
 
 /// The bends of the known cells in one block.
-Mean mean_in_block(const Grid<double>& z, const Mask& known, double X, int bx, int by) {
+Mean mean_in_block(const Grid<double>& z, const Mask& known, const Mask& breaks, double X, int bx,
+                   int by) {
   Mean mean;
   const int x1 = std::min((bx + 1) * block, known.cols() - 1);
   const int y1 = std::min((by + 1) * block, known.rows() - 1);
   for (int y = std::max(1, by * block); y < y1; ++y)
     for (int x = std::max(1, bx * block); x < x1; ++x)
-      if (known(x, y)) mean.add({bend(z, x, y, X), 1});
+      if (known(x, y) && !is_broken(breaks, x - 1, y - 1, 3, 3)) mean.add({bend(z, x, y, X), 1});
   return mean;
 }
 
 }  // namespace
 
-Roughness::Roughness(const Grid<double>& surface, const Mask& known, double X, const Run& run) {
+Roughness::Roughness(const Grid<double>& surface, const Mask& known, const Mask& breaks, double X,
+                     const Run& run) {
   const Size size{blocks(known.cols()), blocks(known.rows())};
   Raster<Mean> means(size);
   parallel_for(0, size.rows, 1, [&](int by) {
-    for (int bx = 0; bx < size.cols; ++bx) means(bx, by) = mean_in_block(surface, known, X, bx, by);
+    for (int bx = 0; bx < size.cols; ++bx)
+      means(bx, by) = mean_in_block(surface, known, breaks, X, bx, by);
   });
   Mean all;
   for (const Mean& m : means.cells()) all.add(m);

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "dem/breaklines.h"
 #include "dem/mcmd.h"
 #include "overshoot.h"
 #include "parallel.h"
@@ -137,6 +138,7 @@ struct Data {
 
 Data make_data(const Dem& dem, const Raster<float>& noise, double nugget, const Grid<double>& x) {
   Data data{Mask(dem.size()), {}, {}};
+  const Mask closed = cells_closed_off(dem.known, dem.breaks);  // nothing says anything of them
   if (nugget > 0) {
     data.w = Grid<float>(dem.size());
     data.f = Grid<float>(dem.size());
@@ -145,7 +147,7 @@ Data make_data(const Dem& dem, const Raster<float>& noise, double nugget, const 
     for (int col = 0; col < dem.size().cols; ++col) {
       const double variance = noise.empty() ? nugget : nugget * double(noise(col, row));
       if (!dem.known(col, row)) {
-        data.free(col, row) = 1;
+        data.free(col, row) = !closed(col, row);
       } else if (variance > 0) {
         data.free(col, row) = 1;
         data.w.row(row)[col] = float(1 / variance);
@@ -181,7 +183,7 @@ class Simulation {
 
   Grid<double> draw(int index, const Run& run) {
     const Level& level = solver_.finest();
-    const Grid<float> f = spring_noise(springs_, level.size, level.w, seed_, index);
+    const Grid<float> f = spring_noise(springs_, level.breaks, level.size, level.w, seed_, index);
     Grid<double> d(level.size);
     solver_.solve(d, &f, {0, 0.03, 100}, run);
     return d;
@@ -195,7 +197,7 @@ class Simulation {
 
 /// The scale of the springs: E(z) = n s^2 for a surface drawn from them and met at n cells.
 double spring_scale(const Springs& springs, const Grid<double>& x, const Dem& dem) {
-  return std::sqrt(spring_energy(springs, x) / double(count(dem.known)));
+  return std::sqrt(spring_energy(springs, dem.breaks, x) / double(count(dem.known)));
 }
 
 /// Standard deviations of the filled cells.
@@ -266,7 +268,7 @@ void sample(const Dem& dem, const SplineOptions& options, const ChosenSprings& c
   Uncertainty uncertainty{spring_scale(springs, x, dem),
                           all_whole_metres(dem) ? 1 / 12. : 0,
                           chosen.contour_step_m,
-                          Roughness(x, dem.known, squared_aspect(dem.spacing), {}),
+                          Roughness(x, dem.known, dem.breaks, squared_aspect(dem.spacing), {}),
                           {}};
 
   const bool simulate = options.sigma == SplineSigma::simulation;
@@ -317,7 +319,7 @@ void soften_overshooting(SplineOptions& options, const Dem& dem, const Raster<fl
   Data data = make_data(dem, noise, options.nugget, start);
   while (options.L1_rows == 0 || options.L1_rows > shortest_rows) {
     Grid<double> x = start;
-    SplineSolver solver(springs_of(options, X, dem.size()), X, data.free, data.w);
+    SplineSolver solver(springs_of(options, X, dem.size()), X, data.free, data.w, dem.breaks);
     solver.solve(x, data.f.empty() ? nullptr : &data.f, rough, run);
     if (overshoot(x, dem.known, distance) <= most) return;
     options.L1_rows = options.L1_rows == 0 ? 128 : options.L1_rows / 2;
@@ -357,9 +359,10 @@ Filled solve(const Dem& dem, const Raster<float>& noise, SplineOptions options, 
   const Springs springs = springs_of(options, X, dem.size());
   {
     Data data = make_data(dem, noise, options.nugget, x);
-    SplineSolver solver(springs, X, data.free, std::move(data.w));
+    SplineSolver solver(springs, X, data.free, std::move(data.w), dem.breaks);
     const Grid<float>* f = data.f.empty() ? nullptr : &data.f;
-    const SolveLimits limits = limits_of(options, chosen);
+    // Beside breaklines the start is far off, in few cells: they need more than the RMS tells.
+    const SolveLimits limits = coarser(limits_of(options, chosen), dem.breaks.empty() ? 1 : 0.2);
     if (!options.adaptive) {
       solved = solver.solve(x, f, limits, run.part(0.4, 1));
     } else {
@@ -371,7 +374,7 @@ Filled solve(const Dem& dem, const Raster<float>& noise, SplineOptions options, 
       const SolveLimits fine{
           std::max(limits.tolerance_m, limits.relative_tolerance * solved.change_m), 0,
           options.max_iterations};
-      Tensor tensor(dem.size(), solver.finest().spans, X);
+      Tensor tensor(dem.size(), solver.finest().spans, X, dem.breaks);
       solver.bend_with(&tensor);
       for (const double part : {0.6, 0.8}) {
         tensor.estimate(x, adaptive_sigma(dem, options, chosen.layout));
@@ -404,6 +407,35 @@ Filled solve(const Dem& dem, const Raster<float>& noise, SplineOptions options, 
   if (chosen.hidden_cells > 0) {
     filled.report.push_back({"hidden_cells", double(chosen.hidden_cells), ""});
     filled.report.push_back({"hidden_rmse", chosen.hidden_rmse_m, "m"});
+  }
+  return filled;
+}
+
+/// What breaklines close off without data gets the surface that goes on from around, as though
+/// there were no lines.
+Filled solve_closed_off(const Dem& dem, Filled filled, SplineOptions options, const Run& run) {
+  const Mask closed = cells_closed_off(dem.known, dem.breaks);
+  const std::size_t cells = count(closed);
+  filled.report.push_back({"closed_off", double(cells), ""});
+  if (cells == 0) return filled;
+  Dem around = dem;
+  around.breaks = {};
+  around.z = filled.z;
+  for (std::size_t i = 0; i < closed.cells().size(); ++i)
+    around.known.cells()[i] = !closed.cells()[i];
+  for (const Figure& figure : filled.report) {
+    if (figure.name == "L1") options.L1_rows = figure.value;
+    if (figure.name == "L3") options.L3_rows = figure.value;
+    if (figure.name == "fourth_order") options.fourth_order = figure.value != 0;
+  }
+  options.parameters = SplineParameters::manual;
+  options.adaptive = options.smooth_known = false;
+  options.nugget = 0;
+  const Filled inside = solve(around, {}, options, run);
+  for (std::size_t i = 0; i < closed.cells().size(); ++i) {
+    if (!closed.cells()[i]) continue;
+    filled.z.cells()[i] = inside.z.cells()[i];
+    if (!filled.sigma.empty()) filled.sigma.cells()[i] = inside.sigma.cells()[i];
   }
   return filled;
 }
@@ -487,7 +519,11 @@ Filled fill_spline(const Dem& dem, const Raster<float>& noise, const SplineOptio
        options.fourth_order != usual.fourth_order))
     throw std::invalid_argument(
         "L1, L3 and fourth_order are chosen from the DEM; to set them, set parameters = manual");
-  return with_threads(run.threads, [&] { return solve(dem, noise, options, run); });
+  return with_threads(run.threads, [&] {
+    if (dem.breaks.empty()) return solve(dem, noise, options, run);
+    return solve_closed_off(dem, solve(dem, noise, options, run.part(0, 0.9)), options,
+                            run.part(0.9, 1));
+  });
 }
 
 }  // namespace dem

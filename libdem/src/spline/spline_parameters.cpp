@@ -5,7 +5,9 @@
 #include <numbers>
 #include <numeric>
 
+#include "dem/breaklines.h"
 #include "dem/mcmd.h"
+#include "lie_together.h"
 #include "parallel.h"
 #include "random.h"
 #include "spline_solver.h"
@@ -66,14 +68,15 @@ void try_springs(std::vector<Trial>& trials, const Candidate& candidate, double 
       for (int y = 0; y < size.rows; ++y) std::ranges::copy(start.row(y), trial.x.row(y));
     }
     Mask free(size);
+    const Mask closed = cells_closed_off(trial.dem.known, trial.dem.breaks);
     for (int y = 0; y < size.rows; ++y)
-      for (int x = 0; x < size.cols; ++x) free(x, y) = !trial.dem.known(x, y);
+      for (int x = 0; x < size.cols; ++x) free(x, y) = !trial.dem.known(x, y) && !closed(x, y);
     const double L1 = candidate.L1 > 0 ? candidate.L1 : 1000. * (size.cols + size.rows);
     const double two_pi = 2 * std::numbers::pi;
     SplineSolver solver(
         terrain_springs(std::pow(two_pi / L1, 2), 1, std::pow(candidate.L3 / two_pi, 2), X,
                         candidate.fourth_order),
-        X, free, {});
+        X, free, {}, trial.dem.breaks);
     solver.solve(trial.x, nullptr, {0, 0.15, 6}, {});
     trial.square_error = 0;
     for (const Hidden& h : trial.hidden)
@@ -420,22 +423,6 @@ Raster<std::uint16_t> distances_to_known(const Mask& known) {
     for (int x = size.cols; x-- > 0;)
       if (d(x, y)) relax(x, y, -1);
   return d;
-}
-
-/// Whether known cells have more known neighbours than cells that lie at random: as along lines.
-/// At random a cell knows 8 * density of its neighbours, give or take a part 1 / sqrt(pairs).
-static bool lie_together(const Mask& mask) {
-  double pairs = 0, known = 0;
-  for (int row = 0; row < mask.rows(); ++row)
-    for (int col = 0; col < mask.cols(); ++col) {
-      if (!mask(col, row)) continue;
-      ++known;
-      for (const auto& [dx, dy] : {std::pair{1, 0}, {-1, 1}, {0, 1}, {1, 1}})
-        if (mask.contains(col + dx, row + dy)) pairs += mask(col + dx, row + dy) != 0;
-    }
-  if (pairs == 0) return false;
-  const double at_random = 4 * known * known / double(mask.size().cells());
-  return pairs > at_random * (1 + 5 / std::sqrt(pairs));
 }
 
 Layout layout_of(const Dem& dem, const Raster<std::uint16_t>& distance) {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "dem/breaklines.h"
 #include "parallel.h"
 #include "random.h"
 
@@ -22,12 +23,13 @@ std::uint64_t stream_of(int index, int i, int j) {
 }
 
 /// Pulls of the springs Dx^i Dy^j that touch row y, added to it.
-void add_pulls(double root_c, int i, int j, Size size, std::uint64_t seed, std::uint64_t stream,
-               int y, std::vector<double>& row) {
+void add_pulls(double root_c, int i, int j, const Mask& breaks, Size size, std::uint64_t seed,
+               std::uint64_t stream, int y, std::vector<double>& row) {
   for (int k = 0; k <= j; ++k) {
     const int first = y - k;  // the spring's first row
     if (first < 0 || first + j >= size.rows) continue;
     for (int x = 0; x + i < size.cols; ++x) {
+      if (is_broken(breaks, x, first, i + 1, j + 1)) continue;
       const double pull = root_c * difference[j][k] * normal(random_bits(seed, stream, x, first));
       for (int m = 0; m <= i; ++m) row[std::size_t(x + m)] += pull * difference[i][m];
     }
@@ -36,15 +38,16 @@ void add_pulls(double root_c, int i, int j, Size size, std::uint64_t seed, std::
 
 }  // namespace
 
-Grid<float> spring_noise(const Springs& springs, Size size, const Grid<float>& w,
-                         std::uint64_t seed, int index) {
+Grid<float> spring_noise(const Springs& springs, const Mask& breaks, Size size,
+                         const Grid<float>& w, std::uint64_t seed, int index) {
   Grid<float> f(size);
   parallel_for(0, size.rows, 16, [&](int y) {
     std::vector<double> row(std::size_t(size.cols), 0.);
     for (int i = 0; i <= 3; ++i)
       for (int j = 0; i + j <= 3; ++j)
         if (springs.c[i][j] > 0)
-          add_pulls(std::sqrt(springs.c[i][j]), i, j, size, seed, stream_of(index, i, j), y, row);
+          add_pulls(std::sqrt(springs.c[i][j]), i, j, breaks, size, seed, stream_of(index, i, j), y,
+                    row);
     if (!w.empty())
       for (int x = 0; x < size.cols; ++x)
         row[std::size_t(x)] += std::sqrt(double(w.row(y)[x])) *
@@ -54,7 +57,7 @@ Grid<float> spring_noise(const Springs& springs, Size size, const Grid<float>& w
   return f;
 }
 
-double spring_energy(const Springs& springs, const Grid<double>& z) {
+double spring_energy(const Springs& springs, const Mask& breaks, const Grid<double>& z) {
   const Size size = z.size();
   std::vector<double> rows(std::size_t(size.rows), 0.);
   parallel_for(0, size.rows, 16, [&](int y) {
@@ -63,6 +66,7 @@ double spring_energy(const Springs& springs, const Grid<double>& z) {
         if (springs.c[i][j] == 0 || y + j >= size.rows) continue;
         double sum = 0;
         for (int x = 0; x + i < size.cols; ++x) {
+          if (is_broken(breaks, x, y, i + 1, j + 1)) continue;
           double d = 0;
           for (int k = 0; k <= j; ++k)
             for (int m = 0; m <= i; ++m)

@@ -12,12 +12,12 @@ namespace dem {
 
 /// Right-hand side whose solution, 0 at fixed cells, is one draw from the springs' distribution:
 /// each spring pulled by a standard normal number, and each data weight of `w` (may be empty) by
-/// one more.
-Grid<float> spring_noise(const Springs& springs, Size size, const Grid<float>& w,
-                         std::uint64_t seed, int index);
+/// one more. Springs across `breaks` (may be empty) are cut.
+Grid<float> spring_noise(const Springs& springs, const Mask& breaks, Size size,
+                         const Grid<float>& w, std::uint64_t seed, int index);
 
-/// The energy of a surface: sum of c_ij ||Dx^i Dy^j z||^2.
-double spring_energy(const Springs& springs, const Grid<double>& z);
+/// The energy of a surface: sum of c_ij ||Dx^i Dy^j z||^2 over the springs that are not cut.
+double spring_energy(const Springs& springs, const Mask& breaks, const Grid<double>& z);
 
 /// Variance as a function of the distance to data, from samples: means in logarithmic bins, made
 /// to grow with the distance.

@@ -76,8 +76,9 @@ double sum_rows(int rows, const RowSum& row_sum) {
 
 }  // namespace
 
-SplineSolver::SplineSolver(const Springs& springs, double X, const Mask& free, Grid<float> w)
-    : multigrid_(springs, X, free, std::move(w)),
+SplineSolver::SplineSolver(const Springs& springs, double X, const Mask& free, Grid<float> w,
+                           const Mask& breaks)
+    : multigrid_(springs, X, free, std::move(w), breaks),
       unknowns_(count(free)),
       r_(free.size()),
       p_(free.size()),
@@ -92,6 +93,10 @@ void SplineSolver::residual(const Grid<double>& x, const Grid<float>* f) {
       residual_row(level.A.exact_row(y), around.data(), f ? f->row(y) : nullptr,
                    level.w.empty() ? nullptr : level.w.row(y), level.dinv.row(y), span,
                    level.size.cols, r_.row(y));
+    for_cut_cells(level, y, around.data(), [&](int i, double Ax) {
+      const double w = level.w.empty() ? 0 : double(level.w.row(y)[i]);
+      r_.row(y)[i] = float((f ? double(f->row(y)[i]) : 0) - Ax - w * x.row(y)[i]);
+    });
   });
   if (tensor_) tensor_->add(x, -1, level.dinv, r_);
 }
@@ -121,6 +126,9 @@ SplineSolver::Products SplineSolver::apply() {
     for (const Span span : level.spans.row(y))
       apply_row(level.A.row(y), around.data(), level.w.empty() ? nullptr : level.w.row(y),
                 level.dinv.row(y), span, level.size.cols, q_.row(y));
+    for_cut_cells(level, y, around.data(), [&](int i, float Ap) {
+      q_.row(y)[i] = level.w.empty() ? Ap : Ap + level.w.row(y)[i] * p_.row(y)[i];
+    });
   };
   const auto sum_up = [&](int y) {
     for (const Span span : level.spans.row(y))

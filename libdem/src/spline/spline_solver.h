@@ -24,7 +24,9 @@ struct Solved {
 /// The system (A + diag(w)) x = f on the free cells; elsewhere x is given.
 class SplineSolver {
  public:
-  SplineSolver(const Springs& springs, double X, const Mask& free, Grid<float> w);
+  /// `breaks`: as Dem::breaks; springs across them are cut.
+  SplineSolver(const Springs& springs, double X, const Mask& free, Grid<float> w,
+               const Mask& breaks = {});
 
   /// Adds the tensor's springs to A, from now on (null: takes them away). It must outlive the
   /// solves. The preconditioner stays that of the plain springs.

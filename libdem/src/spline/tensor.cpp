@@ -175,7 +175,9 @@ void in_row_bands(int rows, const Work& work) {
 
 }  // namespace
 
-Tensor::Tensor(Size size, const Spans& spans, double X) : size_(size), spans_(spans), X_(X) {
+Tensor::Tensor(Size size, const Spans& spans, double X, const Mask& breaks)
+    : size_(size), spans_(spans), X_(X) {
+  if (!breaks.empty()) broken_ = cells_near_breaks(breaks, 1);
   for (auto& w : w_) w = Grid<Weight>(size);
   std::vector<Span> parts;
   for (int y = 0; y < size.rows; ++y) {
@@ -234,6 +236,9 @@ void Tensor::estimate(const Grid<double>& z, double sigma) {
       for (int i = 0; i < 6; ++i)
         out[std::size_t(i)] = plane(ring, std::size_t((y + depth) % depth), i);
       products_row(z.row(at - 1), z.row(at), z.row(at + 1), X, root_2X, 1, cols - 1, out.data());
+      if (!broken_.empty())
+        for (const int x : broken_[std::size_t(at)])
+          for (float* row : out) row[x] = 0;
       for (float* row : out) {
         std::fill(row - margin, row + 1, row[1]);
         std::fill(row + cols - 1, row + cols + margin, row[cols - 2]);
@@ -262,6 +267,9 @@ void Tensor::estimate(const Grid<double>& z, double sigma) {
         }
         weights_row(c.data(), floor, begin, end, w.data());
       }
+      if (!broken_.empty())
+        for (const int x : broken_[std::size_t(y)])
+          for (Weight* row : w) row[x] = 0;
     }
   });
 }

@@ -17,8 +17,9 @@ class Tensor {
  public:
   using Weight = std::int16_t;  ///< in steps of 1 / 1000
 
-  /// Weights are kept where they reach a cell of `spans`. X = (dy / dx)^2.
-  Tensor(Size size, const Spans& spans, double X);
+  /// Weights are kept where they reach a cell of `spans`. X = (dy / dx)^2. Beside `breaks` (as
+  /// Dem::breaks; may be empty) the springs stay as they are: W = 1.
+  Tensor(Size size, const Spans& spans, double X, const Mask& breaks = {});
 
   /// Reads the weights off a surface. C = Gauss(h h^T) over `sigma` cells, W = C'^-1 / 3 with
   /// C' = 0.95 C / trace C + 0.05 C_iso, C_iso that of a surface without direction: W = 1 there.
@@ -36,6 +37,8 @@ class Tensor {
   const Spans& spans_;  ///< rows and columns of free cells
   Spans around_;        ///< the same, one cell wider to all sides
   double X_;
+  std::vector<std::vector<int>>
+      broken_;                     ///< by row: cells with a broken edge in their 3 x 3; empty: none
   std::array<Grid<Weight>, 6> w_;  ///< W - 1: 11, 12, 13, 22, 23, 33; 0 on the rim
 };
 

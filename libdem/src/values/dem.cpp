@@ -15,6 +15,10 @@ void check_shape(const Dem& dem) {
   if (z != known)
     throw std::invalid_argument(fmt::format("dem.known is {} x {}; must be {} x {} as dem.z",
                                             known.cols, known.rows, z.cols, z.rows));
+  if (!dem.breaks.empty() && dem.breaks.size() != z)
+    throw std::invalid_argument(
+        fmt::format("dem.breaks is {} x {}; must be {} x {} as dem.z, or empty", dem.breaks.cols(),
+                    dem.breaks.rows(), z.cols, z.rows));
 }
 
 void check_fillable(const Dem& dem) {
@@ -32,6 +36,7 @@ GeoRef crop(GeoRef ref, const Box& box) {
 
 Dem crop(const Dem& dem, const Box& box, Spacing spacing) {
   Dem part{crop(dem.z, box), crop(dem.known, box), crop(dem.ref, box), spacing};
+  if (!dem.breaks.empty()) part.breaks = crop(dem.breaks, box);
   const auto known = part.known.cells();
   const auto z = part.z.cells();
   for (std::size_t i = 0; i < z.size(); ++i)
