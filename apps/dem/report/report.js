@@ -17,8 +17,8 @@ function el(name, attributes = {}, ...children) {
   return element;
 }
 
-/// A table. Cells are texts, or pictures; those that are numbers stand at the right.
-function table(columns, rows) {
+/// A table under a name of its own. Cells are texts, or pictures; those that are numbers stand at the right.
+function table(name, columns, rows) {
   const is_number = text => /^[−-]?[\d. ]+( \D{1,3})?$/.test(text);
   const cell = content => {
     if (content?.pictures) return el("td", { class: "pictures" }, ...content.pictures.map(thumbnail));
@@ -31,7 +31,7 @@ function table(columns, rows) {
   };
   const head = columns.length ? [el("thead", {}, el("tr", {}, ...columns.map(heading)))] : [];
   const body = el("tbody", {}, ...rows.map(row => el("tr", {}, ...row.map(cell))));
-  return el("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Table" },
+  return el("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": name },
             el("table", columns.length > 5 ? { class: "full" } : {}, ...head, body));
 }
 
@@ -114,7 +114,7 @@ function number(value, largest = 1e7) {
 /// Whether a logarithmic axis names a value: 1, 2, 5 over two decades or less, else powers of ten.
 function named_on_log({ min, max }, value) {
   const decades = Math.log10(max / min);
-  const digit = Math.round(value / 10 ** Math.floor(Math.log10(value) + 1e-9));
+  const digit = +(value / 10 ** Math.floor(Math.log10(value) + 1e-9)).toFixed(6);
   return (decades > 2.5 ? [1] : decades > 1.3 ? [1, 3] : [1, 2, 3, 5, 7]).includes(digit);
 }
 
@@ -227,12 +227,12 @@ function bars(section) {
 
 /// The numbers behind a chart, for those who cannot see it or want to copy them.
 function values(columns, rows) {
-  return el("details", {}, el("summary", {}, "Values"), table(columns, rows));
+  return el("details", {}, el("summary", {}, "Values"), table("Values", columns, rows));
 }
 
 // ---- The page
 
-const KINDS = { swipe, map, lines, histogram, bars, table: section => [table(section.columns, section.rows)] };
+const KINDS = { swipe, map, lines, histogram, bars, table: section => [table(section.title, section.columns, section.rows)] };
 
 /// Pictures stand beside pictures, charts and narrow tables beside each other; wide tables, and what
 /// is left over, take the whole width.
@@ -264,7 +264,8 @@ function draw(data) {
       ...data.sections.map(draw_section),
       el("section", { class: "card wide making" }, el("h2", {}, "How it was made"),
          el("pre", { tabindex: "0" }, data.command),
-         el("div", { class: "columns" }, table([], data.making), table(["step", "time"], data.timings))),
+         el("div", { class: "columns" }, table("Inputs, outputs, settings", [], data.making),
+            table("Times", ["step", "time"], data.timings))),
       el("footer", {}, `dem ${data.version}, ${data.made}. This file fetches nothing.`));
   Chart.defaults.font.family = getComputedStyle(document.body).fontFamily;
   for (const start of waiting) start();
