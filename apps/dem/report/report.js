@@ -111,7 +111,8 @@ function number(value, largest = 1e7) {
   return (rounded < 0 ? "−" : "") + String(Math.abs(rounded)).replace(/\B(?<!\.\d*)(?=(\d{3})+(?!\d))/g, " ");
 }
 
-/// Whether a logarithmic axis names a value: 1, 2, 5 over two decades or less, else powers of ten.
+/// Whether a logarithmic axis names a value: 1, 2, 3, 5, 7 over a decade, 1 and 3 over two, else
+/// powers of ten.
 function named_on_log({ min, max }, value) {
   const decades = Math.log10(max / min);
   const digit = +(value / 10 ** Math.floor(Math.log10(value) + 1e-9)).toFixed(6);
@@ -122,7 +123,8 @@ function named_on_log({ min, max }, value) {
 function axis(spec, extra = {}) {
   const scale = { type: spec.log ? "logarithmic" : "linear", reverse: Boolean(spec.reversed),
                   title: { display: true, text: spec.label, color: MUTED }, grid: { color: GRID, borderColor: MUTED },
-                  ticks: { color: MUTED, maxRotation: 0, autoSkipPadding: 12, callback: value => number(value) }, ...extra };
+                  ticks: { color: MUTED, maxRotation: 0, autoSkipPadding: 12, callback: value => number(value) },
+                  ...extra };
   if (spec.ticks?.length) {
     scale.afterBuildTicks = built => { built.ticks = spec.ticks.map(value => ({ value })); };
     scale.min = Math.min(...spec.ticks);
@@ -132,7 +134,10 @@ function axis(spec, extra = {}) {
     scale.min = Math.min(...spec.values) / 1.2;
     scale.max = Math.max(...spec.values) * 1.2;
     scale.ticks.callback = function (value) { return number(value, this.max >= 1e7 ? 1000 : 1e7); };
-    scale.afterBuildTicks = built => { built.ticks = built.ticks.filter(tick => named_on_log(built, tick.value)); };
+    scale.afterBuildTicks = built => {
+      const named = built.ticks.filter(tick => named_on_log(built, tick.value));
+      if (named.length > 1) built.ticks = named;
+    };
   }
   return scale;
 }
@@ -166,12 +171,12 @@ function chart(config, label, height) {
 }
 const waiting = [];  // drawn once their places stand in the page
 
-function line_dataset(series, i, { stepped = false } = {}) {
+function line_dataset(series, i) {
   const colour = COLOURS[i % COLOURS.length];
   return { label: series.name, data: series.x.map((x, j) => ({ x, y: series.y[j] })), parsing: false,
            showLine: series.line, borderColor: colour, backgroundColor: colour, borderWidth: 1.8, tension: 0,
            borderDash: series.dashed ? [6, 4] : [], pointRadius: series.marks ? 3 : 0, pointHitRadius: 8,
-           pointStyle: series.marks ? MARKS[i % MARKS.length] : "line", stepped };
+           pointStyle: series.marks ? MARKS[i % MARKS.length] : "line" };
 }
 
 const tooltip = (x, y) => ({ callbacks: {
@@ -208,17 +213,18 @@ function bars(section) {
   const { x, y, classes, series, counts, counts_label, title, note } = section;
   const label = item => `${item.dataset.label}: ${number(item.parsed.y)}`;
   const plugins = { tooltip: { callbacks: { label } } };
-  const datasets = series.map((s, i) => ({ label: s.name, data: s.values, backgroundColor: COLOURS[i],
-                                           categoryPercentage: 0.75, maxBarThickness: 72, pointStyle: "rect" }));
+  const shape = { categoryPercentage: 0.75, maxBarThickness: 72, pointStyle: "rect" };
+  const datasets = series.map((s, i) => ({ label: s.name, data: s.values, backgroundColor: COLOURS[i], ...shape }));
   const parts = [];
   if (series.length)
     parts.push(chart({ type: "bar", data: { labels: classes, datasets },
                        options: { scales: { x: category(x.label, classes), y: upright(y) }, plugins } },
                      `${title}. ${note}`, 270));
-  const below = { label: counts_label, data: counts, backgroundColor: "#9aa3ab", categoryPercentage: 0.75, maxBarThickness: 72 };
+  const below = { label: counts_label, data: counts, backgroundColor: "#9aa3ab", ...shape };
   const count_axis = upright({ label: counts_label }, { beginAtZero: true, maxTicks: series.length ? 3 : 8 });
   parts.push(chart({ type: "bar", data: { labels: classes, datasets: [below] },
-                     options: { scales: { x: category(series.length ? "" : x.label, classes), y: count_axis }, plugins } },
+                     options: { scales: { x: category(series.length ? "" : x.label, classes), y: count_axis },
+                                plugins } },
                    `${title}: ${counts_label} in each class`, series.length ? 120 : 300));
   parts.push(values([x.label, ...series.map(s => `${s.name}, ${y.label}`), counts_label],
                     classes.map((name, i) => [name, ...series.map(s => number(s.values[i])), counts[i]])));
@@ -232,7 +238,8 @@ function values(columns, rows) {
 
 // ---- The page
 
-const KINDS = { swipe, map, lines, histogram, bars, table: section => [table(section.title, section.columns, section.rows)] };
+const KINDS = { swipe, map, lines, histogram, bars,
+                table: section => [table(section.title, section.columns, section.rows)] };
 
 /// Pictures stand beside pictures, charts and narrow tables beside each other; wide tables, and what
 /// is left over, take the whole width.
