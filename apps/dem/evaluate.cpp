@@ -3,7 +3,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 #include "dem/geodesy.h"
 #include "report/evaluate_report.h"
@@ -11,8 +10,6 @@
 #include "verbs.h"
 
 namespace dem::app {
-namespace fs = std::filesystem;
-
 namespace {
 
 struct Options {
@@ -139,8 +136,7 @@ void write_page(const Options& o, const Scores& s, Json sections, const Stopwatc
   const Errors& judged = s.filled ? *s.filled : s.all;
   const char* cells = s.filled ? "filled" : "compared";
   ReportPage page;
-  page.title = fmt::format("{} against {}", fs::path(o.got).filename().string(),
-                           fs::path(o.truth).filename().string());
+  page.title = fmt::format("{} against {}", name_of(o.got), name_of(o.truth));
   page.lead = fmt::format("Over {} {} cells the reconstruction is {:.2f} m off (RMSE).",
                           grouped(judged.cells), cells, judged.rmse_m);
   if (s.unfilled)
@@ -217,6 +213,7 @@ void add_evaluate(CLI::App& app, Shell& shell) {
       ->type_name("SAMPLED");
   verb->add_option("--sigma", o->sigma,
                    "what `dem fill --sigma` wrote: how well it foretold the errors")
+      ->check(takes("raster"))
       ->type_name("FILE");
   add_report_option(*verb, o->report);
   verb->add_option("-e,--expect", o->expect,

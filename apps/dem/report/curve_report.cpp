@@ -2,15 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <map>
 
 namespace dem::app {
 namespace {
-
-std::string name_of(const std::string& path) {
-  return std::filesystem::path(path).filename().string();
-}
 
 /// A row for each rate, a column for each method.
 Json score_table(const std::string& title, const std::vector<Score>& scores,

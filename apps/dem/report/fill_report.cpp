@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <numeric>
 #include <utility>
 
@@ -184,9 +183,7 @@ std::string filled_by(const HoleOutcome& hole, const FillOutcome& out, const std
   if (hole.verdict != Verdict::fill) return fmt::format("left: {}", text_of(hole.verdict));
   std::vector<std::string> ways;
   if (hole.method_cells) ways.push_back(method);
-  if (hole.guide_cells)
-    ways.push_back(
-        "over " + std::filesystem::path(out.aux[std::size_t(hole.guide)].path).filename().string());
+  if (hole.guide_cells) ways.push_back("over " + name_of(out.aux[std::size_t(hole.guide)].path));
   if (hole.water_cells) ways.push_back("flat, as water");
   if (hole.left_cells) ways.push_back(fmt::format("{} cells left", grouped(hole.left_cells)));
   return fmt::format("{}", fmt::join(ways, "; "));
@@ -335,7 +332,7 @@ Json fill_sections(const FillOutcome& out, const std::string& method, const Fill
 
 ReportPage fill_page(const std::string& in, const ChosenMethod& chosen, const FillOutcome& out) {
   ReportPage page;
-  page.title = "Filling " + std::filesystem::path(in).filename().string();
+  page.title = "Filling " + name_of(in);
   page.lead = out.unknown == 0
                   ? "All cells were known; the output is a copy."
                   : fmt::format(

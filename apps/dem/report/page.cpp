@@ -38,8 +38,14 @@ std::string seconds(double s) { return fmt::format("{:.3f} s", s); }
 
 }  // namespace
 
+std::string name_of(const std::string& path) {
+  const std::filesystem::path whole(path);
+  return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
+}
+
 void add_report_option(CLI::App& verb, std::string& path) {
   verb.add_option("--report", path, "also write a page to look at: pictures, charts, tables")
+      ->check(takes("new file"))
       ->type_name("FILE.html");
 }
 

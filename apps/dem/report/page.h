@@ -33,6 +33,9 @@ class Stopwatch {
   std::vector<std::pair<std::string, double>> laps_;
 };
 
+/// The last part of a path, for titles.
+std::string name_of(const std::string& path);
+
 using Texts = std::vector<std::pair<std::string, std::string>>;  ///< what, and its value
 
 struct ReportPage {

@@ -17,8 +17,8 @@ function el(name, attributes = {}, ...children) {
   return element;
 }
 
-/// A table. Cells are texts, or pictures; those that are numbers stand at the right.
-function table(columns, rows) {
+/// A table under a name of its own. Cells are texts, or pictures; those that are numbers stand at the right.
+function table(name, columns, rows) {
   const is_number = text => /^[−-]?[\d. ]+( \D{1,3})?$/.test(text);
   const cell = content => {
     if (content?.pictures) return el("td", { class: "pictures" }, ...content.pictures.map(thumbnail));
@@ -31,7 +31,7 @@ function table(columns, rows) {
   };
   const head = columns.length ? [el("thead", {}, el("tr", {}, ...columns.map(heading)))] : [];
   const body = el("tbody", {}, ...rows.map(row => el("tr", {}, ...row.map(cell))));
-  return el("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Table" },
+  return el("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": name },
             el("table", columns.length > 5 ? { class: "full" } : {}, ...head, body));
 }
 
@@ -111,10 +111,11 @@ function number(value, largest = 1e7) {
   return (rounded < 0 ? "−" : "") + String(Math.abs(rounded)).replace(/\B(?<!\.\d*)(?=(\d{3})+(?!\d))/g, " ");
 }
 
-/// Whether a logarithmic axis names a value: 1, 2, 5 over two decades or less, else powers of ten.
+/// Whether a logarithmic axis names a value: 1, 2, 3, 5, 7 over a decade, 1 and 3 over two, else
+/// powers of ten.
 function named_on_log({ min, max }, value) {
   const decades = Math.log10(max / min);
-  const digit = Math.round(value / 10 ** Math.floor(Math.log10(value) + 1e-9));
+  const digit = +(value / 10 ** Math.floor(Math.log10(value) + 1e-9)).toFixed(6);
   return (decades > 2.5 ? [1] : decades > 1.3 ? [1, 3] : [1, 2, 3, 5, 7]).includes(digit);
 }
 
@@ -122,7 +123,8 @@ function named_on_log({ min, max }, value) {
 function axis(spec, extra = {}) {
   const scale = { type: spec.log ? "logarithmic" : "linear", reverse: Boolean(spec.reversed),
                   title: { display: true, text: spec.label, color: MUTED }, grid: { color: GRID, borderColor: MUTED },
-                  ticks: { color: MUTED, maxRotation: 0, autoSkipPadding: 12, callback: value => number(value) }, ...extra };
+                  ticks: { color: MUTED, maxRotation: 0, autoSkipPadding: 12, callback: value => number(value) },
+                  ...extra };
   if (spec.ticks?.length) {
     scale.afterBuildTicks = built => { built.ticks = spec.ticks.map(value => ({ value })); };
     scale.min = Math.min(...spec.ticks);
@@ -132,7 +134,10 @@ function axis(spec, extra = {}) {
     scale.min = Math.min(...spec.values) / 1.2;
     scale.max = Math.max(...spec.values) * 1.2;
     scale.ticks.callback = function (value) { return number(value, this.max >= 1e7 ? 1000 : 1e7); };
-    scale.afterBuildTicks = built => { built.ticks = built.ticks.filter(tick => named_on_log(built, tick.value)); };
+    scale.afterBuildTicks = built => {
+      const named = built.ticks.filter(tick => named_on_log(built, tick.value));
+      if (named.length > 1) built.ticks = named;
+    };
   }
   return scale;
 }
@@ -166,12 +171,12 @@ function chart(config, label, height) {
 }
 const waiting = [];  // drawn once their places stand in the page
 
-function line_dataset(series, i, { stepped = false } = {}) {
+function line_dataset(series, i) {
   const colour = COLOURS[i % COLOURS.length];
   return { label: series.name, data: series.x.map((x, j) => ({ x, y: series.y[j] })), parsing: false,
            showLine: series.line, borderColor: colour, backgroundColor: colour, borderWidth: 1.8, tension: 0,
            borderDash: series.dashed ? [6, 4] : [], pointRadius: series.marks ? 3 : 0, pointHitRadius: 8,
-           pointStyle: series.marks ? MARKS[i % MARKS.length] : "line", stepped };
+           pointStyle: series.marks ? MARKS[i % MARKS.length] : "line" };
 }
 
 const tooltip = (x, y) => ({ callbacks: {
@@ -208,17 +213,18 @@ function bars(section) {
   const { x, y, classes, series, counts, counts_label, title, note } = section;
   const label = item => `${item.dataset.label}: ${number(item.parsed.y)}`;
   const plugins = { tooltip: { callbacks: { label } } };
-  const datasets = series.map((s, i) => ({ label: s.name, data: s.values, backgroundColor: COLOURS[i],
-                                           categoryPercentage: 0.75, maxBarThickness: 72, pointStyle: "rect" }));
+  const shape = { categoryPercentage: 0.75, maxBarThickness: 72, pointStyle: "rect" };
+  const datasets = series.map((s, i) => ({ label: s.name, data: s.values, backgroundColor: COLOURS[i], ...shape }));
   const parts = [];
   if (series.length)
     parts.push(chart({ type: "bar", data: { labels: classes, datasets },
                        options: { scales: { x: category(x.label, classes), y: upright(y) }, plugins } },
                      `${title}. ${note}`, 270));
-  const below = { label: counts_label, data: counts, backgroundColor: "#9aa3ab", categoryPercentage: 0.75, maxBarThickness: 72 };
+  const below = { label: counts_label, data: counts, backgroundColor: "#9aa3ab", ...shape };
   const count_axis = upright({ label: counts_label }, { beginAtZero: true, maxTicks: series.length ? 3 : 8 });
   parts.push(chart({ type: "bar", data: { labels: classes, datasets: [below] },
-                     options: { scales: { x: category(series.length ? "" : x.label, classes), y: count_axis }, plugins } },
+                     options: { scales: { x: category(series.length ? "" : x.label, classes), y: count_axis },
+                                plugins } },
                    `${title}: ${counts_label} in each class`, series.length ? 120 : 300));
   parts.push(values([x.label, ...series.map(s => `${s.name}, ${y.label}`), counts_label],
                     classes.map((name, i) => [name, ...series.map(s => number(s.values[i])), counts[i]])));
@@ -227,12 +233,13 @@ function bars(section) {
 
 /// The numbers behind a chart, for those who cannot see it or want to copy them.
 function values(columns, rows) {
-  return el("details", {}, el("summary", {}, "Values"), table(columns, rows));
+  return el("details", {}, el("summary", {}, "Values"), table("Values", columns, rows));
 }
 
 // ---- The page
 
-const KINDS = { swipe, map, lines, histogram, bars, table: section => [table(section.columns, section.rows)] };
+const KINDS = { swipe, map, lines, histogram, bars,
+                table: section => [table(section.title, section.columns, section.rows)] };
 
 /// Pictures stand beside pictures, charts and narrow tables beside each other; wide tables, and what
 /// is left over, take the whole width.
@@ -264,7 +271,8 @@ function draw(data) {
       ...data.sections.map(draw_section),
       el("section", { class: "card wide making" }, el("h2", {}, "How it was made"),
          el("pre", { tabindex: "0" }, data.command),
-         el("div", { class: "columns" }, table([], data.making), table(["step", "time"], data.timings))),
+         el("div", { class: "columns" }, table("Inputs, outputs, settings", [], data.making),
+            table("Times", ["step", "time"], data.timings))),
       el("footer", {}, `dem ${data.version}, ${data.made}. This file fetches nothing.`));
   Chart.defaults.font.family = getComputedStyle(document.body).fontFamily;
   for (const start of waiting) start();
