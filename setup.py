@@ -1,6 +1,8 @@
 """Builds the Python package by CMake, with what is installed: nothing is downloaded.
 
     pip install --no-build-isolation .
+
+CMAKE_ARGS goes to cmake; DEM_BUILD names a CMake build folder to take instead of building anew.
 """
 import os
 import pathlib
@@ -19,12 +21,14 @@ VERSION = re.search(r"project\(libdem VERSION (\S+)", (ROOT / "CMakeLists.txt").
 
 class CMakeBuild(build_ext):
     def build_extension(self, extension):
-        build = pathlib.Path(self.build_temp).resolve()
-        build.mkdir(parents=True, exist_ok=True)
-        generator = ["-G", "Ninja"] if shutil.which("ninja") else []
-        subprocess.check_call(["cmake", "-S", ROOT, "-B", build, *generator, "-DCMAKE_BUILD_TYPE=Release",
-                               "-DDEM_BUILD_TESTS=OFF", "-DDEM_BUILD_BENCH=OFF", f"-DDEM_PYTHON={sys.executable}",
-                               *shlex.split(os.environ.get("CMAKE_ARGS", ""))])
+        given = os.environ.get("DEM_BUILD")  # a build that is there already
+        build = pathlib.Path(given or self.build_temp).resolve()
+        if not given:
+            build.mkdir(parents=True, exist_ok=True)
+            generator = ["-G", "Ninja"] if shutil.which("ninja") else []
+            subprocess.check_call(["cmake", "-S", ROOT, "-B", build, *generator, "-DCMAKE_BUILD_TYPE=Release",
+                                   "-DDEM_BUILD_TESTS=OFF", "-DDEM_BUILD_BENCH=OFF", f"-DDEM_PYTHON={sys.executable}",
+                                   *shlex.split(os.environ.get("CMAKE_ARGS", ""))])
         subprocess.check_call(["cmake", "--build", build, "--target", "dem_python_package", "--parallel"])
         package = pathlib.Path(self.get_ext_fullpath(extension.name)).resolve().parent
         package.mkdir(parents=True, exist_ok=True)

@@ -32,6 +32,9 @@ TYPES = {
 }
 RETURNS = {"fill": "Filled", "supersample": "Filled", "grid": "Filled", "sample": "Dem", "generate": "Dem",
            "erode": "Eroded", "evaluate": "Scores", "render": "npt.NDArray[np.uint8]", "read": "Dem", "write": "None"}
+PROPERTIES = {"z": "npt.NDArray[np.float32]", "known": "npt.NDArray[np.bool_]",
+              "elevation": "npt.NDArray[np.floating[Any]]", "shape": "tuple[int, int]", "spacing": "tuple[float, float]",
+              "to_world": "list[float]", "crs": "str", "dtype": "str", "nodata": "float | None"}
 KINDS = {"number": "float", "integer": "int", "boolean": "bool"}
 
 HEAD = '''\
@@ -95,17 +98,19 @@ def literal(row):
 
 
 def overloads(name, parameter_name, rows, default):
-    """The default's signature comes first: only it may leave the parameter out."""
+    """The default's signature comes first: only it may leave the parameter out. The last one is for names
+    that are not known before the program runs."""
     rows = sorted(rows, key=lambda row: row[1] != default)
+    any_name = function(name, (parameter_name, "str", False), (), "@overload\n").replace(") ->", ", **settings: Any) ->")
     return "".join(function(name, (parameter_name, text, row_name == default), fields, "@overload\n")
-                   for text, row_name, fields in rows)
+                   for text, row_name, fields in rows) + any_name
 
 
 def of_class(cls):
     lines = [f"class {cls.__name__}:"]
     for name, value in sorted(vars(cls).items()):
         if isinstance(value, property) and not name.startswith("_"):
-            kind = {"z": "npt.NDArray[np.float32]", "known": "npt.NDArray[np.bool_]"}.get(name, "Any")
+            kind = PROPERTIES.get(name, "Any")
             lines.append(f"    @property\n    def {name}(self) -> {kind}: ...")
     return lines
 

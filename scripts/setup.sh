@@ -16,7 +16,8 @@ test_packages=(
   libgtest-dev libgmock-dev libbenchmark-dev libembree-dev
   clang-14 clang-format-14 libclang-rt-14-dev
   python3 python3-pytest python3-hypothesis python3-xarray python3-rioxarray python3-tqdm
-  python3-distributed chromium
+  python3-distributed python3-pip python3-setuptools python3-wheel
+  chromium
   man-db zsh fish
 )
 
