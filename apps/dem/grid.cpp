@@ -226,6 +226,16 @@ std::string plural(std::size_t n, const char* what) {
   return fmt::format("{} {}{}", grouped(n), what, n == 1 ? "" : "s");
 }
 
+/// No planet has such heights in metres.
+constexpr double kAbsurd_m = 30000;
+
+std::size_t count_absurd(const Dem& dem) {
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < dem.z.cells().size(); ++i)
+    n += dem.known.cells()[i] && std::abs(double(dem.z.cells()[i])) > kAbsurd_m;
+  return n;
+}
+
 void say_what_was_read(const Options& o, const Read& read, Shell& shell) {
   const BinCounts& n = read.binned.counts;
   const Dem& dem = read.binned.dem;
@@ -241,6 +251,10 @@ void say_what_was_read(const Options& o, const Read& read, Shell& shell) {
   if (n.parted > 0)
     shell.say("{} parted from their cell's centre by a breakline left out",
               plural(n.parted, "point"));
+  if (const std::size_t absurd = count_absurd(dem); absurd > 0)
+    shell.say(
+        "warning: {} with elevations beyond {:g} m; --reject-outliers or --nodata leaves such out",
+        plural(absurd, "cell"), kAbsurd_m);
   if (n.duplicates > 0)
     shell.say(
         "{} at the place of another with another elevation: combined by {}",
@@ -350,6 +364,9 @@ int grid(Options& o, Shell& shell) {
     Gridded gridded = fill(o, read, method, run.part(0.4, 0.9));
     const double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    if (method.method->traits.for_contours && !on_contour_lines(gridded.filled.report))
+      shell.say("{}: the cells with points are no contour lines; the spline filled the rest",
+                o.method);
     dem.z = std::move(gridded.filled.z);
     dem.known = Mask(dem.size(), 1);
     sigma = std::move(gridded.filled.sigma);

@@ -175,6 +175,16 @@ class BadInput(CliTest):
                 self.assertIn(words, done.stderr.splitlines()[-1])
             self.assert_files("p.csv")
 
+    def test_a_raster_is_no_file_of_points(self):
+        self.write("p.csv", csv([(1, 2, 3), (30, 20, 4)]))
+        self.succeeds("grid", "p.csv", "r.tif", "--cell", "10m")
+        self.fails(2, "grid", "r.tif", "g.tif", says=["is a raster"])
+
+    def test_heights_of_no_planet_are_warned_of(self):
+        self.write("p.csv", csv([(1, 2, 3), (8, 9, 1e9), (30, 20, 4)]))
+        done = self.succeeds("grid", "p.csv", "g.tif", "--cell", "5m")
+        self.assertIn("with elevations beyond 30000 m; --reject-outliers", done.stderr)
+
     def test_points_off_the_lattice(self):
         self.write("p.csv", csv([(10, 500, 1), (20, 600, 2)]))
         self.fails(2, "grid", "p.csv", "g.tif", "--bounds", "400,0,700,30", "--cell", "10m",

@@ -63,10 +63,14 @@ double cells_needed(const std::vector<const BudgetPoint*>& curve, double rmse_m)
 
 std::string svg(const std::string& title, const Dem& truth, const BudgetOptions& options,
                 const std::vector<BudgetPoint>& points) {
-  return svg_chart(title,
-                   fmt::format("{} x {} cells, reconstructed by {} from the cells kept.",
-                               truth.z.cols(), truth.z.rows(), options.method),
-                   budget_panels(truth, points));
+  std::vector<Panel> panels = budget_panels(truth, points);
+  panels.front().levels = options.rmse_m;
+  return svg_chart(
+      title,
+      fmt::format("{} x {} cells, reconstructed by {} from the cells kept. Dotted: the "
+                  "RMSE asked for, {} m.",
+                  truth.z.cols(), truth.z.rows(), options.method, fmt::join(options.rmse_m, ", ")),
+      panels);
 }
 
 }  // namespace
@@ -76,7 +80,8 @@ std::vector<Panel> budget_panels(const Dem& truth, const std::vector<BudgetPoint
   Panel error{"Error",
               {"cells kept, % (logarithmic)", true, false, {}},
               {"RMSE over all cells, m", true},
-              {}};
+              {},
+              options.rmse_m};
   Panel worst{"Worst cell", error.x, {"largest error, m", true}, {}};
   for (const auto& strategy : kStrategies) {
     Series rmse{strategy, {}, {}}, most{strategy, {}, {}};
@@ -116,9 +121,15 @@ std::vector<BudgetPoint> measure_budget(const Dem& truth, const BudgetOptions& o
   const double most = std::ranges::max(options.percents) / 100 * double(known);
   const GreedySample greedy = sample_greedy(
       truth, method, {.count = std::clamp<std::size_t>(std::size_t(most), 4, known)}, quiet);
-  for (const GreedyRound& r : greedy.rounds)
-    if (double(r.kept) >= std::ranges::min(options.percents) / 100 * double(known))
+  const double least = std::ranges::min(options.percents) / 100 * double(known);
+  for (std::size_t i = 0; i < greedy.rounds.size(); ++i) {
+    const GreedyRound& r = greedy.rounds[i];
+    // The last rounds add few cells: one of them stands for all.
+    const bool as_many =
+        i + 1 < greedy.rounds.size() && double(greedy.rounds[i + 1].kept) < 1.02 * double(r.kept);
+    if (double(r.kept) >= least && !as_many)
       points.push_back({"greedy", r.kept, r.rmse_m, r.max_error_m});
+  }
   return points;
 }
 

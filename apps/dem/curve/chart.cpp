@@ -149,12 +149,18 @@ std::string draw_panel(const Panel& panel) {
   const Scale y = fit(panel, true, kTop + kPlotHeight, kTop);
   std::string svg = frame(panel, x, y);
 
-  std::vector<double> ends;
+  for (const double level : panel.levels)
+    if (level >= y.low && level <= y.high)
+      svg += fmt::format("<path class=\"level\" d=\"M{:.1f} {:.1f}h{:.1f}\"/>\n", kLeft, y(level),
+                         kPlotWidth);
+
+  std::vector<double> ends, tips;
   for (const auto& s : panel.series) {
     std::size_t last = 0;  // the rightmost point
     for (std::size_t i = 0; i < s.x.size(); ++i)
       if (x(s.x[i]) >= x(s.x[last])) last = i;
     ends.push_back(s.y.empty() ? kTop : y(s.y[last]));
+    tips.push_back(s.x.empty() ? kLeft + kPlotWidth : x(s.x[last]));
   }
   const auto names = spread(ends, kTop + 6, kTop + kPlotHeight);
   for (std::size_t i = 0; i < panel.series.size(); ++i) {
@@ -173,7 +179,7 @@ std::string draw_panel(const Panel& panel) {
     svg += fmt::format(
         "<path fill=\"none\" stroke=\"{}\" stroke-opacity=\"0.5\" d=\"M{:.1f} {:.1f}L{:.1f} "
         "{:.1f}\"/>\n",
-        colour, right + 5, ends[i], right + 18, names[i]);
+        colour, tips[i] + 5, ends[i], right + 18, names[i]);
     if (s.marks) svg += mark(int(i), right + 24, names[i], colour);
     svg += text_at(right + 32, names[i] + 4, s.name, fmt::format("style=\"fill:{}\"", colour));
   }
@@ -191,7 +197,7 @@ std::string svg_chart(const std::string& title, const std::string& note,
       "<style>text{{font:13px 'DejaVu Sans',Helvetica,Arial,sans-serif;fill:#222}}"
       ".title{{font-size:17px;font-weight:bold}}.panel{{font-size:14px;font-weight:bold}}"
       ".note{{font-size:11.5px;fill:#555}}.grid{{stroke:#e4e4e4;fill:none}}.axis{{stroke:#444;fill:"
-      "none}}"
+      "none}}.level{{stroke:#888;stroke-width:1.2;stroke-dasharray:2 4}}"
       "</style>\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n",
       width, height);
   svg += text_at(kLeft, 32, title, "class=\"title\"");

@@ -25,6 +25,7 @@ struct Panel {
   std::string title;
   Axis x, y;
   std::vector<Series> series;
+  std::vector<double> levels{};  ///< y of dotted lines across
 };
 
 /// Panels side by side under one title. The i-th series of each panel has the i-th colour; colours

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "dem/baselines.h"
+#include "dem/contours.h"
 #include "fill/hole_fill.h"
 #include "fill/stream_fill.h"
 #include "report/fill_report.h"
@@ -105,6 +106,8 @@ void report(const Options& o, const ChosenMethod& chosen, const FillOutcome& out
         grouped(out.filled), grouped(out.unknown), grouped(out.border_holes),
         grouped(out.holes.size()), grouped(out.border_cells), left, o.method, grouped(out.windows),
         out.windows == 1 ? "" : "s", out.seconds, known_cells(o, out, type), o.out);
+    if (chosen.method->traits.for_contours && !on_contour_lines(out.figures))
+      shell.say("{}: the known cells are no contour lines; the spline filled the rest", o.method);
   }
   for (const auto& fit : out.aux)
     if (!fit.warning.empty()) shell.say("warning: {} {}", fit.path, fit.warning);

@@ -53,4 +53,7 @@ Filled fill_contours(const Dem& dem, const ContourOptions& options = {}, const R
 Filled fill_contours(const Dem& lines, const Raster<float>& at_centres,
                      const ContourOptions& options, const Run& run = {});
 
+/// Whether the report of fill_contours says that the known cells were contour lines.
+bool on_contour_lines(const std::vector<Figure>& report);
+
 }  // namespace dem

@@ -400,4 +400,9 @@ Filled fill_contours(const Dem& lines, const Raster<float>& at_centres,
   return fill_within(dem, bounds, centre_noise, options, run.part(0.1, 1));
 }
 
+bool on_contour_lines(const std::vector<Figure>& report) {
+  const auto found = std::ranges::find(report, "contour_lines", &Figure::name);
+  return found != report.end() && found->value != 0;
+}
+
 }  // namespace dem

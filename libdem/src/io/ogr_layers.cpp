@@ -42,6 +42,8 @@ VectorLayer::VectorLayer(const std::string& path, const std::string& name) : pat
   const GdalErrors errors;
   dataset_.reset(GDALOpenEx(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR,
                             nullptr, nullptr, nullptr));
+  if (!dataset_ && GDALIdentifyDriverEx(path.c_str(), GDAL_OF_RASTER, nullptr, nullptr))
+    throw IoError(path, "is a raster; points are text with columns, LAS or a vector layer");
   if (!dataset_) errors.fail(path, "no format of points is known that it has");
   const auto names = layer_names(dataset_.get());
   if (names.empty()) throw IoError(path, "has no layer");
