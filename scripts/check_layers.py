@@ -13,7 +13,7 @@ import tempfile
 LAYERS = {
     "values": ["breaklines", "canvas", "dem", "fields", "palette", "raster", "river", "run"],
     "helpers": ["cubic", "envelope", "flood", "gradient", "lie_together", "parallel", "paths", "random", "vectorised"],  # private: for any algorithm
-    "algorithms": ["baseline", "breakdown", "contours", "deterrace", "draw", "erosion", "evaluate", "faults", "holes", "mcmd", "networks",
+    "algorithms": ["baseline", "breakdown", "contours", "deterrace", "draw", "erosion", "evaluate", "faults", "hole_parts", "holes", "mcmd", "networks",
                    "noise", "outliers", "points", "raytrace", "riverland", "sample", "sketch", "spline"],
     "methods": ["find_row", "generators", "greedy", "gridding", "methods", "supersample"],
     "io": ["aligned_reader", "baselines", "cells", "crs", "drawing", "gdal_raster", "gdal_support", "geodesy", "heightmap",
@@ -23,7 +23,7 @@ LAYERS = {
 
 # An algorithm that is written in several private files. They belong to it alone.
 PARTS = {
-    "holes": ["hole_filter", "hole_parts", "hole_scan", "hole_windows"],
+    "holes": ["hole_filter", "hole_scan", "hole_windows"],
     "mcmd": ["contour_sides", "lattice", "midpoint", "pyramid", "row_kernels", "waves"],
     "networks": ["growth", "ridges", "rivers"],
     "raytrace": ["heightfield", "sky", "view"],
@@ -34,9 +34,10 @@ PARTS = {
 }
 
 # The algorithms that call another: the spline's solver starts from MCMD's surface, generators end
-# with it, and the surface between contour lines is a spline that is held within bounds.
+# with it, and the surface between contour lines is a spline that is held within bounds. Holes of parts become
+# holes of the whole.
 CALLS = {("spline", "mcmd"), ("spline_parameters", "mcmd"), ("roughness", "mcmd"), ("networks", "mcmd"),
-         ("riverland_relief", "mcmd"), ("sketch", "mcmd"), ("lsystem", "mcmd"), ("contours", "spline")}
+         ("riverland_relief", "mcmd"), ("sketch", "mcmd"), ("lsystem", "mcmd"), ("contours", "spline"), ("hole_parts", "holes")}
 
 # The layers that each layer may include. Algorithms do not include each other: they compose
 # through data.

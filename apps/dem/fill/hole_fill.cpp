@@ -56,6 +56,12 @@ FillPlan plan_fill(const FillRequest& request, const std::vector<Hole>& holes, S
   return plan;
 }
 
+std::function<Filled(const Dem&, const Run&)> filler(const ChosenMethod& chosen) {
+  return [chosen](const Dem& dem, const Run& run) {
+    return chosen.method->fill(dem, chosen.settings, run);
+  };
+}
+
 void account(const HolePatch& patch, const FillPlan& plan, FillOutcome& outcome) {
   for (std::size_t i = 0; i < patch.holes.size(); ++i) {
     HoleOutcome& hole = outcome.outcomes[patch.holes[i]];
@@ -99,9 +105,7 @@ FillOutcome fill_holes_of(Dem& dem, const FillRequest& request, const Run& run) 
   HoleWork work;
   work.flat_water = !plan.whole;
   work.rim_errors = request.rim_errors;
-  work.fill = [&](const Dem& window, const Run& how) {
-    return request.method.method->fill(window, request.method.settings, how);
-  };
+  work.fill = filler(request.method);
   work.read = [&](const Box& box) {
     WindowData data{crop(dem, box, spacing[std::size_t(box.row + box.rows / 2)]), {}, {}};
     layers.add(data, box);

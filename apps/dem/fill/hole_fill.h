@@ -62,6 +62,9 @@ struct FillPlan {
 FillPlan plan_fill(const FillRequest& request, const std::vector<Hole>& holes, Size raster,
                    const GeoRef& ref, FillOutcome& outcome);
 
+/// Fills a window by a method with its settings.
+std::function<Filled(const Dem&, const Run&)> filler(const ChosenMethod& chosen);
+
 /// Adds what a patch says to the outcome.
 void account(const HolePatch& patch, const FillPlan& plan, FillOutcome& outcome);
 

@@ -164,9 +164,7 @@ void StreamFill::fill(const FillRequest& request, const Run& run) {
   work.flat_water = !plan_.whole;
   work.rim_errors = request.rim_errors;
   work.memory_cells = memory_cells;
-  work.fill = [&](const Dem& window, const Run& how) {
-    return request.method.method->fill(window, request.method.settings, how);
-  };
+  work.fill = filler(request.method);
   work.read = [&](const Box& box) {
     WindowData data{reader_.read(box), {}, {}};
     data.dem.spacing = spacing_[std::size_t(box.row + box.rows / 2)];

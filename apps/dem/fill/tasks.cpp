@@ -174,7 +174,7 @@ BundleOutcome SharedRaster::fill(const Bundle& bundle, const std::string& path,
   work.flat_water = !bundle.whole;
   work.memory_cells = std::max<std::size_t>(
       1, (memory_ - program_bytes - block_cache(memory_)) / bytes_a_cell(request_));
-  work.fill = window_fill(request_, bundle.whole);
+  work.fill = filler(request_.method);
   work.read = [&](const Box& box) {
     WindowData data{reader_.read(box), {}, {}};
     data.dem.spacing = spacing_[std::size_t(box.row + box.rows / 2)];
