@@ -431,8 +431,6 @@ class Resume(HoleTest):
         for task in "0/3", "4/3", "1.5/3", "2", "/", "1/200000":
             self.fails(1, "fill", "a.tif", "o.tif", "--task", task, says=[f"task = {task}", "1 <= I <= N"])
         self.fails(1, "fill", "a.tif", "o.tif", "--task", "1/2", "--resume", says=["no --resume"])
-        self.holed()
-        self.fails(2, "fill", "N10E010.hgt", "o.tif", "--task", "1/2", says=["N10E010.hgt", "GeoTIFF"])
         self.succeeds("fill", "a.tif", "o.tif", "--task", "1/2")
         self.fails(2, "fill", "a.tif", "o.tif", "--resume", "-m", "mcmd",
                    says=[".o.tif.journal.1of2", "other settings", "remove it"])

@@ -80,8 +80,7 @@ std::vector<Panel> budget_panels(const Dem& truth, const std::vector<BudgetPoint
   Panel error{"Error",
               {"cells kept, % (logarithmic)", true, false, {}},
               {"RMSE over all cells, m", true},
-              {},
-              options.rmse_m};
+              {}};
   Panel worst{"Worst cell", error.x, {"largest error, m", true}, {}};
   for (const auto& strategy : kStrategies) {
     Series rmse{strategy, {}, {}}, most{strategy, {}, {}};

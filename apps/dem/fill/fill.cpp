@@ -430,7 +430,7 @@ void add_fill(CLI::App& app, Shell& shell) {
   verb->add_option_function<std::string>(
           "--task",
           [o](const std::string& text) { std::tie(o->task, o->tasks) = parse_task(text); },
-          "fill the I-th of N shares into a journal; when all are done, --resume writes OUT")
+          "the I-th of N shares, into a journal; after all, --resume writes OUT")
       ->type_name("I/N");
   o->choice.add_options(*verb);
   add_read_options(*verb, o->read);

@@ -296,7 +296,8 @@ DatasetPtr open_folder(const std::string& path, const GdalErrors& errors) {
 OpenBand open_band(const std::string& path, const ReadOptions& options, GdalErrors& errors) {
   register_gdal();
   OpenBand open;
-  if (std::filesystem::is_directory(path))
+  std::error_code error;  // then GDAL says what is wrong with it
+  if (std::filesystem::is_directory(path, error))
     open.dataset = open_folder(path, errors);
   else
     open.dataset.reset(GDALOpenEx(path.c_str(),
