@@ -19,6 +19,7 @@ test_packages=(
   python3-distributed python3-pip python3-setuptools python3-wheel
   chromium
   man-db zsh fish
+  qgis
 )
 
 case "${1:-}" in

@@ -15,7 +15,15 @@ add_test(NAME house.consumer_without_gis
                  -DWORK=${CMAKE_CURRENT_BINARY_DIR}/consumer_without_gis/work
                  -DCONSUMER=${CMAKE_CURRENT_SOURCE_DIR}/consumer -DIO=OFF
                  -P ${CMAKE_CURRENT_SOURCE_DIR}/consumer/run.cmake)
-set(house_tests house.format house.layers house.layers_check_finds_planted_violations
+if(DEM_BUILD_IO AND DEM_BUILD_APPS AND NOT DEM_SANITIZE)
+  add_test(NAME house.docs
+           COMMAND ${PROJECT_SOURCE_DIR}/scripts/docs.sh --check $<TARGET_FILE:dem_cli>)
+  add_test(NAME house.tutorial
+           COMMAND Python3::Interpreter ${PROJECT_SOURCE_DIR}/scripts/run_page.py
+                   ${PROJECT_SOURCE_DIR}/docs/tutorial.md $<TARGET_FILE:dem_cli>)
+  set(docs_tests house.docs house.tutorial)
+endif()
+set(house_tests ${docs_tests} house.format house.layers house.layers_check_finds_planted_violations
     house.consumer_without_gis)
 if(DEM_BUILD_IO AND NOT DEM_SANITIZE)
   add_test(NAME house.consumer

@@ -197,7 +197,9 @@ void add_generate(CLI::App& app, Shell& shell) {
   verb->add_option("--size", o->size, "columns and rows; else 1025, or the image's")
       ->type_name("N|WxH");
   verb->add_option("--cell", o->cell, "size of a cell in metres; else 30")->type_name("M|DXxDY");
-  verb->add_option("--crs", o->crs, "coordinate system, e.g. EPSG:32619")->type_name("NAME");
+  verb->add_option("--crs", o->crs, "coordinate system, e.g. EPSG:32619")
+      ->check(takes("crs"))
+      ->type_name("NAME");
   verb->add_option("--origin", o->origin,
                    "the north-west cell's centre in the CRS's units; else 0,0")
       ->type_name("X,Y");

@@ -413,6 +413,7 @@ void add_point_options(CLI::App& verb, Options& o) {
       ->type_name("VALUE")
       ->group(group);
   verb.add_option("--crs", o.read.crs, "what x and y are in: EPSG:25832, PROJ, WKT")
+      ->check(takes("crs"))
       ->type_name("CRS")
       ->group(group);
 }
@@ -431,6 +432,7 @@ void add_lattice_options(CLI::App& verb, Options& o) {
       ->group(group);
   verb.add_flag("--nodes", o.nodes, "bounds are the centres of the outer cells")->group(group);
   verb.add_option("--to-crs", o.read.to_crs, "coordinate system of the lattice; else the points'")
+      ->check(takes("crs"))
       ->type_name("CRS")
       ->group(group);
 }
@@ -476,6 +478,7 @@ void add_grid(CLI::App& app, Shell& shell) {
       ->type_name("HOW");
   verb->add_option("--reject-outliers", o->bin.outliers,
                    "leave out cells so many spreads off their surroundings, e.g. 10")
+      ->check(takes("number"))
       ->check(CLI::Range(1.0, 1e9).description(""))
       ->type_name("TIMES");
   verb->add_flag("--snap", o->snap, "take points as lying on their cell's centre");

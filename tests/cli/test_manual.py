@@ -49,9 +49,9 @@ class Verbs(CliTest):
     def test_every_file_of_a_verb_is_marked(self):
         for name, verb in self.verbs.items():
             for a in verb["arguments"] + verb["options"]:
-                looks = re.search(r"FILE|DEM|RASTER|DIR|SAMPLED", a["value"]) or a["names"][0] in ("IN", "OUT", "TRUTH", "GOT", "DIR")
-                self.assertEqual(bool(looks), a["takes"] not in ("", "number", "points") and a["names"][0] != "FILE"
-                                 and a["names"][0] != "FILES", (name, a["names"]))
+                looks = (re.search(r"FILE|DEM|RASTER|DIR|SAMPLED", a["value"]) or
+                         a["names"][0] in ("IN", "OUT", "TRUTH", "GOT", "DIR", "FILE", "FILES", "POINTS"))
+                self.assertEqual(bool(looks), a["takes"] not in ("", "number", "crs"), (name, a["names"]))
 
     def test_table_has_settings_of_erosion_and_styles(self):
         self.assertIn("steps", [f["name"] for f in self.tables["erosion"]])

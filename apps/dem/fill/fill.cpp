@@ -400,6 +400,7 @@ void add_fill(CLI::App& app, Shell& shell) {
       ->type_name("auto|VALUE");
   verb->add_option("--realisation", o->realisation,
                    "the K-th random surface through the data, as rough as the terrain")
+      ->check(takes("number"))
       ->check(CLI::Range(1, 1000000).description(""))
       ->type_name("K");
   verb->add_option("--seed", o->seed, "of random numbers")->type_name("N");

@@ -13,7 +13,8 @@ enum class Value { words, files, folders, anything };
 Value value_of(const ArgumentOutline& a) {
   if (!a.choices.empty()) return Value::words;
   if (a.takes.ends_with("folder")) return Value::folders;
-  return a.takes.empty() || a.takes == "number" ? Value::anything : Value::files;
+  return a.takes.empty() || a.takes == "number" || a.takes == "crs" ? Value::anything
+                                                                    : Value::files;
 }
 
 std::string joined(const std::vector<std::string>& words) {

@@ -127,7 +127,8 @@ std::string markdown_block(const std::string& kind, const std::string& text) {
 }
 
 std::string markdown_list(const std::vector<ArgumentOutline>& list, const std::string& group) {
-  std::string text = "| | |\n|---|---|\n";
+  const bool positional = !list.empty() && !list[0].names[0].starts_with("-");
+  std::string text = fmt::format("| {} | |\n|---|---|\n", positional ? "argument" : "option");
   for (const auto& a : list)
     if (a.group == group)
       text += fmt::format("| {} | {} |\n", code(names_text(a)), cell(a.doc + remarks(a)));
