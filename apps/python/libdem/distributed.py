@@ -44,14 +44,8 @@ def _tile_files(sources):
     """The files that `sources` names, or one VRT."""
     if not isinstance(sources, (str, os.PathLike)):
         return [os.fspath(source) for source in sources]
-    path = pathlib.Path(sources)
-    if not path.is_dir():
-        return [str(path)]
-    for ending in (".hgt", ".tif"):
-        files = sorted(str(f) for f in path.iterdir() if f.suffix.lower() == ending)
-        if files:
-            return files
-    raise FileNotFoundError(f"{path}: holds no .hgt and no .tif")
+    path = os.fspath(sources)
+    return _core.tiles_in(path) if os.path.isdir(path) else [path]
 
 
 def _tiles_of_vrt(path):
@@ -64,14 +58,14 @@ def _tiles_of_vrt(path):
     for source in [] if band is None else band.iter():
         if source.tag not in ("SimpleSource", "ComplexSource"):
             continue
-        name, to = source.find("SourceFilename"), source.find("DstRect")
-        file = pathlib.Path(path).parent / name.text if name.get("relativeToVRT") == "1" else pathlib.Path(name.text)
-        cols, rows = _core.describe(str(file))["size"]
+        name, of, to = (source.find(tag) for tag in ("SourceFilename", "SourceProperties", "DstRect"))
+        file = name.text if name.get("relativeToVRT") != "1" else os.path.join(os.path.dirname(path), name.text)
+        size = _core.describe(file)["size"] if of is None else (int(of.get("RasterXSize")), int(of.get("RasterYSize")))
         sides = ("xOff", "yOff", "xSize", "ySize")
-        box = (0, 0, cols, rows) if to is None else tuple(round(float(to.get(side))) for side in sides)
-        if box[2:] != (cols, rows):
-            raise ValueError(f"{path}: shows {file} in {box[2]} x {box[3]} cells; it has {cols} x {rows}")
-        tiles.append(_Tile(str(file), box))
+        box = (0, 0, *size) if to is None else tuple(round(float(to.get(side))) for side in sides)
+        if box[2:] != tuple(size):
+            raise ValueError(f"{path}: shows {file} in {box[2]} x {box[3]} cells; it has {size[0]} x {size[1]}")
+        tiles.append(_Tile(file, box))
     if not tiles:
         raise ValueError(f"{path}: is a VRT of no tiles")
     return tiles
@@ -91,9 +85,8 @@ def _place(head, first):
     return place
 
 
-def _write_vrt(files, nodata, path):
-    """A VRT of the files, which must lie on one lattice; their tiles."""
-    heads = [_core.describe(file) for file in files]
+def _write_vrt(files, heads, nodata, path):
+    """A VRT of the files with these heads, which must lie on one lattice; their tiles."""
     first = heads[0]
     places = []
     for file, head in zip(files, heads):
@@ -167,6 +160,10 @@ class _Job:
         return _core.SharedRaster(self.mosaic, self.nodata, self.method, list(self.settings),
                                   _core.HoleChoice(*self.choice), self.whole, list(self.aux), self.water, self.memory)
 
+    def check(self):
+        """Tells of bad settings before any work."""
+        _core.check_job(self.method, list(self.settings), _core.HoleChoice(*self.choice), self.memory)
+
     def file(self, kind, number):
         return os.path.join(self.folder, f"{kind}-{number:06d}")
 
@@ -200,6 +197,12 @@ def _timed(task):
         result = task(*arguments)
         return result, time.thread_time() - begin
     return timed
+
+
+@_timed
+def read_heads(files):
+    """Where tiles lie, and of what type they are."""
+    return [_core.describe(file) for file in files]
 
 
 @_timed
@@ -362,9 +365,8 @@ def fill_mosaic(sources, out_dir, client=None, *, method=_core.default_method, n
     given_vrt = files[0] if len(files) == 1 and files[0].lower().endswith(".vrt") else None
     stamps = [_stamp(file) for file in files]
     if given_vrt:
-        tiles = _tiles_of_vrt(given_vrt)
-        stamps += [_stamp(tile.path) for tile in tiles]
-        files = [tile.path for tile in tiles]
+        files = [tile.path for tile in _tiles_of_vrt(given_vrt)]
+        stamps += [_stamp(file) for file in files]
     outs = _outputs([_Tile(file, ()) for file in files], out_dir)
     text = _api._method_settings(method, settings)
     choice = (inner_only, max_area_km2, max_distance_m, min_cells, where, "")
@@ -373,17 +375,22 @@ def fill_mosaic(sources, out_dir, client=None, *, method=_core.default_method, n
     told = [_core.version, stamps, nodata, method, text, choice, whole, aux, water, str(memory), bundle_cells]
     key = hashlib.sha256(json.dumps(told).encode()).hexdigest()
     folder = os.path.join(os.path.abspath(out_dir), FOLDER)
-    _prepare(key, folder, outs, overwrite)
     mosaic = os.path.abspath(given_vrt) if given_vrt else os.path.join(folder, "mosaic.vrt")
-    if not given_vrt:
-        tiles = _write_vrt(files, nodata, mosaic)
     job = _Job(mosaic, folder, key, nodata, method, tuple(text), choice, whole, aux, water, str(memory), threads)
-    raster = job.open()  # bad settings show here
-    result = {"tiles": len(tiles), "cells": raster.size[0] * raster.size[1]}
+    job.check()
+    _prepare(key, folder, outs, overwrite)
+    result, cpu = {}, {}
     with callback(progress) as report, _client(client) as cluster, _Futures(cluster, retries) as tasks:
         seconds = [time.monotonic()]
-        (bundles, told), scanned = _plan(job, raster, tiles, tasks, report, bundle_cells)
-        cpu = {"scan": scanned}
+        if not os.path.exists(mosaic):
+            some = 16
+            heads = [tasks.submit(read_heads, files[n:n + some]) for n in range(0, len(files), some)]
+            heads, cpu["heads"] = _gather(heads, report, 0, 0.02, "reading heads")
+            _write_vrt(files, [head for some in heads for head in some], nodata, mosaic)
+        tiles = _tiles_of_vrt(mosaic)
+        raster = job.open()
+        result.update(tiles=len(tiles), cells=raster.size[0] * raster.size[1])
+        (bundles, told), cpu["scan"] = _plan(job, raster, tiles, tasks, report, bundle_cells)
         result.update(told, bundles=len(bundles))
         seconds.append(time.monotonic())
         filling = [tasks.submit(fill_bundle, job, n, bundle) for n, (bundle, _, _) in enumerate(bundles)]
@@ -416,7 +423,7 @@ def _plan(job, raster, tiles, tasks, report, bundle_cells):
     boxes = _parts(tiles, raster.size)
     scanning = [tasks.submit(scan_part, job, n, box) for n, box in enumerate(boxes)]
     try:
-        _, cpu = _gather(scanning, report, 0, 0.19, "looking for holes")
+        _, cpu = _gather(scanning, report, 0.02, 0.19, "looking for holes")
     except OSError:  # GDAL names the mosaic; name the tile
         for future, box in zip(scanning, boxes):
             if future.status == "error":

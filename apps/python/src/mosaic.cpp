@@ -25,9 +25,6 @@ std::unique_ptr<app::SharedRaster> open(const std::string& path,
                                         const app::HoleChoice& choice, bool whole,
                                         const std::vector<std::string>& aux,
                                         const std::string& water, const std::string& memory) {
-  check(choice);
-  if (!choice.region.empty())
-    throw std::invalid_argument("region is for one raster; choose holes of a mosaic by where");
   ReadOptions read;
   read.nodata = nodata;
   read.detect_nodata = false;
@@ -36,6 +33,14 @@ std::unique_ptr<app::SharedRaster> open(const std::string& path,
       app::FillRequest{choose_method(method, settings), choice, whole, false, false, false, aux,
                        water},
       app::parse_memory("memory", memory));
+}
+
+/// Throws for settings that no raster would do with.
+void check_job(const std::string& method, const Settings& settings, const app::HoleChoice& choice,
+               const std::string& memory) {
+  choose_method(method, settings);
+  check(choice);
+  app::parse_memory("memory", memory);
 }
 
 /// Which of many boxes hold a place, by squares.
@@ -162,6 +167,8 @@ py::dict describe(const std::string& path) {
 void bind_mosaic(py::module_& module) {
   using namespace py::literals;
   module.def("describe", &describe, "path"_a);
+  module.def("tiles_in", &tiles_in, "folder"_a);
+  module.def("check_job", &check_job, "method"_a, "settings"_a, "choice"_a, "memory"_a);
   py::class_<app::SharedRaster>(module, "SharedRaster")
       .def(py::init(&open), "path"_a, "nodata"_a, "method"_a, "settings"_a, "choice"_a, "whole"_a,
            "aux"_a, "water"_a, "memory"_a)
