@@ -20,7 +20,7 @@ def executable():
 class Browser:
     """One page. `events` holds what the browser told so far."""
 
-    def __init__(self, seconds=60):
+    def __init__(self, seconds=150):
         self.deadline = time.monotonic() + seconds
         self.profile = tempfile.mkdtemp(prefix="dem-browser-")
         commands, self.out = os.pipe()
