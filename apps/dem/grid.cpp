@@ -465,7 +465,7 @@ void add_grid(CLI::App& app, Shell& shell) {
       ->allow_extra_args(false)
       ->type_name("KEY=VALUE");
   verb->add_option("--breaklines", o->breaklines,
-                   "lines and polygons across which the surface may jump: cliffs, dams, quays")
+                   "lines and polygons across which the surface may jump: cliffs, dams")
       ->type_name("LAYER");
   verb->add_option_function<std::string>(
           "--combine",
