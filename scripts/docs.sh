@@ -23,6 +23,7 @@ note="<!-- Written by scripts/docs.sh from the program itself: change the help, 
 
 ## More
 - [Tutorial](tutorial.md): remove cells from a tile, fill them, see how good that was.
+- [From Python](python.md): numpy, xarray, and mosaics on a Dask cluster.
 - [From C](c.md), and from every language that calls C.
 - [QGIS](qgis.md): the same in the Processing toolbox.
 - The same pages for `man`: `dem manual fill | man -l -`; installed, `man dem-fill`.

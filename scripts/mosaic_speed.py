@@ -8,6 +8,7 @@ times finer lattice, each unknown cell becoming nine. Prints processor time for 
 """
 import os
 import pathlib
+import resource
 import sys
 import tempfile
 
@@ -29,6 +30,10 @@ def tile(path):
     return np.where(known, np.rint(fine), -32768).astype(">i2")
 
 
+def peak_memory():
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+
+
 def main():
     workers = int(sys.argv[1]) if len(sys.argv) > 1 else 1
     data = pathlib.Path(os.environ["DEM_TESTDATA"])
@@ -40,12 +45,13 @@ def main():
             values = tile(found)
             values.tofile(tiles / name)
             print(f"{name} from {found.name}: {(values == -32768).mean():.3%} unknown")
-        with LocalCluster(workers, threads_per_worker=1, dashboard_address=None) as cluster, Client(cluster) as client:
+        with LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=None) as cluster, Client(cluster) as client:
             report = fill_mosaic(tiles, pathlib.Path(folder, "out"), client)
+            most = max(client.run(peak_memory).values())
     cells, cpu = report["cells"], report["cpu_seconds"]
     all_cpu = sum(cpu.values())
     print(f"{cells} cells, {report['unknown']} unknown ({report['unknown'] / cells:.3%}), {report['voids']} voids; "
-          f"{workers} worker{'s' * (workers > 1)}, {report['seconds']['all']:.1f} s")
+          f"{workers} worker{'s' * (workers > 1)}, {report['seconds']['all']:.1f} s, at most {most:.0f} MB to a worker")
     for step, seconds in cpu.items():
         print(f"  {step:6} {seconds:7.2f} s of processor, {cells / seconds / 1e6:7.2f} million cells of the mosaic a second")
     print(f"  {'all':6} {all_cpu:7.2f} s of processor, {cells / all_cpu / 1e6:7.2f} million cells of the mosaic a second")

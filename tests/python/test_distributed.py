@@ -22,7 +22,7 @@ SIDE = 301  # of a tile; neighbours share a row or column
 
 @pytest.fixture(scope="module")
 def client():
-    with distributed.LocalCluster(2, threads_per_worker=1, processes=True, dashboard_address=None) as cluster, \
+    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None) as cluster, \
             distributed.Client(cluster) as client:
         yield client
 
