@@ -15,6 +15,7 @@ Needs python3-numpy and python3-gdal, and `dem` (--dem, default build/release/ap
 import argparse
 import os
 import pathlib
+import re
 import resource
 import shlex
 import shutil
@@ -63,8 +64,8 @@ SPEED = {
     "gdal_grid linear": ("gdal_grid", [GDAL_GRID % "linear:radius=-1:nodata=-9999"]),
     "gdal_grid invdistnn": ("gdal_grid", [GDAL_GRID % INVDIST]),
     "gmt blockmean, surface -T0.25": ("gmt", [
-        "gmt blockmean points.csv -h1 -R0/{cols}/0/{rows} -I1 -r -bo3d > means.bin",
-        "gmt surface means.bin -bi3d -R0/{cols}/0/{rows} -I1 -r -T0.25 -Gfilled.nc", *NC_TO_TIF]),
+        "gmt blockmean points.csv -h1 -R0/{cols}/0/{rows} -I1 -r > means.txt",
+        "gmt surface means.txt -R0/{cols}/0/{rows} -I1 -r -T0.25 -Gfilled.nc", *NC_TO_TIF]),
     "saga MBA": ("saga_cmd", [SAGA_POINTS, SAGA_MBA, *SAGA_OUT]),
 }
 
@@ -95,6 +96,8 @@ def surface_of(commands, problem, folder, limits):
 def contest(contestants, problem, shared, limits):
     """Yields name, heights, CPU seconds and, when there are no heights, why."""
     for name, (program, commands) in contestants.items():
+        if not re.search(limits["only"], name):
+            continue
         if program != "dem" and not shutil.which(program):
             yield name, None, 0, f"{program} is not installed"
             continue
@@ -169,7 +172,7 @@ def contours(args, folder, limits):
 
 
 def random(args, folder, limits):
-    methods = list(GIVEN_CELLS)
+    methods = [m for m in GIVEN_CELLS if re.search(limits["only"], m)]
     print("| terrain | given | " + " | ".join(methods) + " |\n|---|---:|" + "---:|" * len(methods))
     for path in args.what:
         truth = part_of(path, folder)
@@ -228,10 +231,11 @@ def main():
     parser.add_argument("what", nargs="+")
     parser.add_argument("--cpu", type=float, default=600, metavar="SECONDS")
     parser.add_argument("--memory", type=float, default=8, metavar="GB")
+    parser.add_argument("--only", default="", metavar="REGEX", help="only the methods whose name matches")
     parser.add_argument("--dem", default=str(ROOT / "build/release/apps/dem/dem"), metavar="PROGRAM")
     args = parser.parse_args()
     args.dem = shlex.quote(os.path.abspath(args.dem))
-    limits = {"cpu": args.cpu, "memory": int(args.memory * 1e9)}
+    limits = {"cpu": args.cpu, "memory": int(args.memory * 1e9), "only": args.only}
     with tempfile.TemporaryDirectory(prefix="compare") as outer:
         shared = pathlib.Path(outer) / "shared"
         shared.mkdir()
