@@ -466,6 +466,7 @@ void add_grid(CLI::App& app, Shell& shell) {
       ->type_name("KEY=VALUE");
   verb->add_option("--breaklines", o->breaklines,
                    "lines and polygons across which the surface may jump: cliffs, dams")
+      ->check(takes("vector"))
       ->type_name("LAYER");
   verb->add_option_function<std::string>(
           "--combine",

@@ -49,7 +49,7 @@ class Verbs(CliTest):
     def test_every_file_of_a_verb_is_marked(self):
         for name, verb in self.verbs.items():
             for a in verb["arguments"] + verb["options"]:
-                looks = (re.search(r"FILE|DEM|RASTER|DIR|SAMPLED", a["value"]) or
+                looks = (re.search(r"FILE|DEM|RASTER|LAYER|DIR|SAMPLED", a["value"]) or
                          a["names"][0] in ("IN", "OUT", "TRUTH", "GOT", "DIR", "FILE", "FILES", "POINTS"))
                 self.assertEqual(bool(looks), a["takes"] not in ("", "number", "crs"), (name, a["names"]))
 
