@@ -442,7 +442,7 @@ Layout layout_of(const Dem& dem, const Raster<std::uint16_t>& distance) {
 
 ChosenSprings choose_springs(const Dem& dem, Layout layout, const Raster<std::uint16_t>& distance,
                              double X, bool errors_wanted, const Run& run) {
-  constexpr std::size_t cells_to_choose_from = 1 << 18;
+  constexpr std::size_t cells_to_choose_from = 1 << 15;
   const std::size_t cells = dem.size().cells();
   if (cells < cells_to_choose_from && 5 * count(dem.known) >= 3 * cells)
     return usual_beside_holes(dem, layout, distance, X, errors_wanted);

@@ -41,7 +41,7 @@ Layout layout_of(const Dem& dem, const Raster<std::uint16_t>& distance);
 /// Method: scattered: a tenth (sparse ones: a fifth) of the known cells hidden in one window of each
 ///         quadrant. Clustered: disks as wide as the gaps, cut beside them, each in a window of its
 ///         own; the mean of the logarithms of their errors. Both with a small charge for leaving the
-///         usual springs. Fewer than 2^18 cells of which three fifths are known, as around a hole,
+///         usual springs. Fewer than 2^15 cells of which three fifths are known, as around a hole,
 ///         take the usual springs; their hidden cells are looked at when `errors_wanted`.
 ChosenSprings choose_springs(const Dem& dem, Layout layout, const Raster<std::uint16_t>& distance,
                              double X, bool errors_wanted, const Run& run);
