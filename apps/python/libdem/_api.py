@@ -325,7 +325,8 @@ def generate(name, shape=None, *, spacing=30.0, origin=(0.0, 0.0), crs="", image
         shape = _whole("rows", int(rows), 1), _whole("columns", int(cols), 1)
     with callback(progress) as call:
         return _call.generate(name, _tables.as_settings(settings), shape, _pair("spacing", spacing),
-                              _numbers("origin", origin, 2, "x and y"), crs, array, file, median, _threads(threads), call)
+                              _numbers("origin", origin, 2, "x and y"), crs, array, file, median,
+                              _threads(threads), call)
 
 
 def erode(z, *, known=None, spacing=None, nodata=None, to_world=None, crs="", threads=0, progress=None,

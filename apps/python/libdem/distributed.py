@@ -92,7 +92,8 @@ def _write_vrt(files, heads, nodata, path):
     for file, head in zip(files, heads):
         for what in "type", "crs":
             if head[what] != first[what]:
-                raise ValueError(f"{file}: its {what} is {head[what][:60]}; must be {first[what][:60]}, as in {files[0]}")
+                raise ValueError(f"{file}: its {what} is {head[what][:60]}; must be {first[what][:60]}, "
+                                 f"as in {files[0]}")
         place = _place(head, first)
         if place is None:
             raise ValueError(f"{file}: its cells do not lie on the lattice of those of {files[0]}")
@@ -103,7 +104,8 @@ def _write_vrt(files, heads, nodata, path):
                        rasterYSize=str(max(t.box[1] + t.box[3] for t in tiles)))
     x, dx, _, y, _, dy = first["to_world"]
     if first["crs"]:
-        xml.SubElement(root, "SRS", dataAxisToSRSAxisMapping="2,1" if "GEOGC" in first["crs"][:5] else "1,2").text = first["crs"]
+        axes = "2,1" if first["crs"].startswith("GEOGC") else "1,2"
+        xml.SubElement(root, "SRS", dataAxisToSRSAxisMapping=axes).text = first["crs"]
     corner = (x + (west - 0.5) * dx, dx, 0, y + (north - 0.5) * dy, 0, dy)
     xml.SubElement(root, "GeoTransform").text = ", ".join(repr(float(v)) for v in corner)
     band = xml.SubElement(root, "VRTRasterBand", dataType=first["type"], band="1")
@@ -132,7 +134,8 @@ def _parts(tiles, size):
     def step(axis):
         starts = sorted({tile.box[axis] for tile in tiles})
         gaps = [b - a for a, b in zip(starts, starts[1:])]
-        return max(512, statistics.mode(gaps) if gaps else 0, min(4096, statistics.mode(t.box[axis + 2] for t in tiles)) - 1)
+        side = statistics.mode(tile.box[axis + 2] for tile in tiles)
+        return max(512, statistics.mode(gaps) if gaps else 0, min(4096, side) - 1)
     cols, rows = step(0), step(1)
     return [(col, row, min(cols, size[0] - col), min(rows, size[1] - row))
             for row in range(0, size[1], rows) for col in range(0, size[0], cols)]
@@ -379,40 +382,49 @@ def fill_mosaic(sources, out_dir, client=None, *, method=_core.default_method, n
     job = _Job(mosaic, folder, key, nodata, method, tuple(text), choice, whole, aux, water, str(memory), threads)
     job.check()
     _prepare(key, folder, outs, overwrite)
-    result, cpu = {}, {}
     with callback(progress) as report, _client(client) as cluster, _Futures(cluster, retries) as tasks:
-        seconds = [time.monotonic()]
-        if not os.path.exists(mosaic):
-            some = 16
-            heads = [tasks.submit(read_heads, files[n:n + some]) for n in range(0, len(files), some)]
-            heads, cpu["heads"] = _gather(heads, report, 0, 0.02, "reading heads")
-            _write_vrt(files, [head for some in heads for head in some], nodata, mosaic)
-        tiles = _tiles_of_vrt(mosaic)
-        raster = job.open()
-        result.update(tiles=len(tiles), cells=raster.size[0] * raster.size[1])
-        (bundles, told), cpu["scan"] = _plan(job, raster, tiles, tasks, report, bundle_cells)
-        result.update(told, bundles=len(bundles))
-        seconds.append(time.monotonic())
-        filling = [tasks.submit(fill_bundle, job, n, bundle) for n, (bundle, _, _) in enumerate(bundles)]
-        bundles_of = [[] for _ in tiles]
-        for n, (_, _, numbers) in enumerate(bundles):
-            for tile in numbers:
-                bundles_of[tile].append(n)
-        writing = [tasks.submit(write_tile, job, t, tile, bundles_of[t], out, [filling[n] for n in bundles_of[t]])
-                   for t, (tile, out) in enumerate(zip(tiles, outs))]
-        filled, cpu["fill"] = _gather(filling, report, 0.2, 0.8, "filling holes")
-        seconds.append(time.monotonic())
-        left, cpu["write"] = _gather(writing, report, 0.8, 1, "writing tiles")
-        seconds.append(time.monotonic())
-    for name in "filled", "water", "over_aux", "windows", "resumed":
-        result[name] = sum(outcome[name] for outcome in filled)
-    result["left"] = sum(outcome["left"] for outcome in filled)
-    result["unknown_in_tiles"] = sum(left)
-    result["seconds"] = {name: b - a for name, a, b in zip(("scan", "fill", "write"), seconds, seconds[1:])}
+        result = _run(job, files, outs, bundle_cells, tasks, report)
     result["seconds"]["all"] = time.monotonic() - begin
-    result["cpu_seconds"] = cpu
     shutil.rmtree(folder)
     return result
+
+
+def _run(job, files, outs, bundle_cells, tasks, report):
+    """The steps of a run, each on the cluster; what was done."""
+    cpu, seconds = {}, [time.monotonic()]
+    if not os.path.exists(job.mosaic):
+        cpu["heads"] = _make_vrt(job, files, tasks, report)
+    tiles = _tiles_of_vrt(job.mosaic)
+    raster = job.open()
+    (bundles, told), cpu["scan"] = _plan(job, raster, tiles, tasks, report, bundle_cells)
+    seconds.append(time.monotonic())
+    filling = [tasks.submit(fill_bundle, job, n, bundle) for n, (bundle, _, _) in enumerate(bundles)]
+    bundles_of = [[] for _ in tiles]
+    for n, (_, _, numbers) in enumerate(bundles):
+        for tile in numbers:
+            bundles_of[tile].append(n)
+    writing = [tasks.submit(write_tile, job, t, tile, bundles_of[t], out, [filling[n] for n in bundles_of[t]])
+               for t, (tile, out) in enumerate(zip(tiles, outs))]
+    filled, cpu["fill"] = _gather(filling, report, 0.2, 0.8, "filling holes")
+    seconds.append(time.monotonic())
+    left, cpu["write"] = _gather(writing, report, 0.8, 1, "writing tiles")
+    seconds.append(time.monotonic())
+    result = {"tiles": len(tiles), "cells": raster.size[0] * raster.size[1], **told, "bundles": len(bundles)}
+    for name in "filled", "left", "water", "over_aux", "windows", "resumed":
+        result[name] = sum(outcome[name] for outcome in filled)
+    result["unknown_in_tiles"] = sum(left)
+    result["seconds"] = {name: b - a for name, a, b in zip(("scan", "fill", "write"), seconds, seconds[1:])}
+    result["cpu_seconds"] = cpu
+    return result
+
+
+def _make_vrt(job, files, tasks, report):
+    """Writes the VRT of the mosaic; the processor time of reading heads."""
+    some = 16
+    reading = [tasks.submit(read_heads, files[n:n + some]) for n in range(0, len(files), some)]
+    heads, cpu = _gather(reading, report, 0, 0.02, "reading heads")
+    _write_vrt(files, [head for some in heads for head in some], job.nodata, job.mosaic)
+    return cpu
 
 
 def _plan(job, raster, tiles, tasks, report, bundle_cells):
