@@ -369,7 +369,7 @@ class Resume(HoleTest):
             os.remove(self.path("o.tif"))
             for _ in range(3):  # killed twice before it may end
                 run = subprocess.Popen([DEM, *command], cwd=self.dir)
-                time.sleep(dice.uniform(0, whole_time))
+                time.sleep(dice.uniform(0, whole_time) if killed else 0.05)  # once for sure
                 run.kill()
                 killed += run.wait() == -signal.SIGKILL
                 if os.path.exists(self.path("o.tif")):
