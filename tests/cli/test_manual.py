@@ -116,6 +116,7 @@ ask "bindkey '^I' list-choices"
 ask "print rea''dy"
 zpty -r -m z answer '*ready*' || exit 1
 zpty -w -n z "$1"$'\\t'
+sleep 1  # a key that waits would stop the listing
 ask $'\\025print do''ne'
 zpty -r -m z answer '*done*' || exit 1
 print -r -- "$answer"
