@@ -27,20 +27,20 @@ VoidSummary flood(Mask known) {
   for (int r = 0; r < known.rows(); ++r)
     for (int c = 0; c < known.cols(); ++c) {
       if (known(c, r)) continue;
-      std::vector<std::pair<int, int>> todo{{c, r}};
+      std::vector<std::pair<int, int>> waiting{{c, r}};
       known(c, r) = 1;
       std::size_t cells = 0;
       bool rim = false;
-      while (!todo.empty()) {
-        const auto [x, y] = todo.back();
-        todo.pop_back();
+      while (!waiting.empty()) {
+        const auto [x, y] = waiting.back();
+        waiting.pop_back();
         ++cells;
         rim |= x == 0 || y == 0 || x == known.cols() - 1 || y == known.rows() - 1;
         for (int dy = -1; dy <= 1; ++dy)
           for (int dx = -1; dx <= 1; ++dx)
             if (known.contains(x + dx, y + dy) && !known(x + dx, y + dy)) {
               known(x + dx, y + dy) = 1;
-              todo.push_back({x + dx, y + dy});
+              waiting.push_back({x + dx, y + dy});
             }
       }
       ++sum.voids;

@@ -129,20 +129,20 @@ Mask cells_closed_off(const Mask& known, const Mask& breaks) {
   if (breaks.empty()) return Mask(size);
   // What known cells reach over unbroken edges is not closed off.
   Mask closed(size, 1);
-  std::vector<Cell> todo;
+  std::vector<Cell> waiting;
   const auto reach = [&](int col, int row) {
     if (!closed(col, row)) return;
     closed(col, row) = 0;
-    todo.push_back({col, row});
+    waiting.push_back({col, row});
   };
   const auto open = [&](int col, int row, std::uint8_t edge) { return !(breaks(col, row) & edge); };
   for (int row = 0; row < size.rows; ++row)
     for (int col = 0; col < size.cols; ++col) {
       if (!known(col, row)) continue;
       reach(col, row);
-      while (!todo.empty()) {
-        const auto [x, y] = todo.back();
-        todo.pop_back();
+      while (!waiting.empty()) {
+        const auto [x, y] = waiting.back();
+        waiting.pop_back();
         if (x + 1 < size.cols && open(x, y, break_east)) reach(x + 1, y);
         if (x > 0 && open(x - 1, y, break_east)) reach(x - 1, y);
         if (y + 1 < size.rows && open(x, y, break_south)) reach(x, y + 1);
