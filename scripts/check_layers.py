@@ -9,54 +9,33 @@ import re
 import sys
 import tempfile
 
-# The layer of each file. A header dem/NAME.h and its source NAME.cpp share a name and a layer.
-LAYERS = {
-    "values": ["breaklines", "canvas", "dem", "fields", "palette", "raster", "river", "run"],
-    "helpers": ["cubic", "envelope", "flood", "gradient", "lie_together", "parallel", "paths", "random", "vectorised"],  # private: for any algorithm
-    "algorithms": ["baseline", "breakdown", "contours", "deterrace", "draw", "erosion", "evaluate", "faults", "hole_parts", "holes", "mcmd", "networks",
-                   "noise", "outliers", "points", "raytrace", "riverland", "sample", "sketch", "spline"],
-    "methods": ["find_row", "generators", "greedy", "gridding", "methods", "supersample"],
-    "io": ["aligned_reader", "baselines", "cells", "crs", "drawing", "gdal_raster", "gdal_support", "geodesy", "heightmap",
-           "hgt", "image", "io", "las", "lattices", "libdem", "nodata", "ogr_layers", "oiio_support", "point_files",
-           "point_reading", "point_text", "point_vectors", "polygons", "raster_stream", "raster_writer", "staged_file", "tile_folder"],
-}
-
-# An algorithm that is written in several private files. They belong to it alone.
-PARTS = {
-    "holes": ["hole_filter", "hole_scan", "hole_windows"],
-    "mcmd": ["contour_sides", "lattice", "midpoint", "pyramid", "row_kernels", "waves"],
-    "networks": ["growth", "ridges", "rivers"],
-    "raytrace": ["heightfield", "sky", "view"],
-    "spline": ["cuts", "grid", "multigrid", "overshoot", "roughness", "spline_parameters", "spline_sample", "spline_solver",
-               "springs", "tensor"],
-    "riverland": ["riverland_heights", "riverland_parts", "riverland_relief", "riverland_rivers"],
-    "sketch": ["lsystem"],
-}
-
-# The algorithms that call another: the spline's solver starts from MCMD's surface, generators end
-# with it, and the surface between contour lines is a spline that is held within bounds. Holes of parts become
-# holes of the whole.
-CALLS = {("spline", "mcmd"), ("spline_parameters", "mcmd"), ("roughness", "mcmd"), ("networks", "mcmd"),
-         ("riverland_relief", "mcmd"), ("sketch", "mcmd"), ("lsystem", "mcmd"), ("contours", "spline"), ("hole_parts", "holes")}
-
-# The layers that each layer may include. Algorithms do not include each other: they compose
-# through data.
+# The folders of libdem/src, and the folders whose public headers their files may include. Private headers
+# belong to their folder, but for those of numeric, which every folder of the library may use.
+BASE = {"values", "numeric"}
 MAY_INCLUDE = {
     "values": {"values"},
-    "helpers": {"values", "helpers"},
-    "algorithms": {"values", "helpers"},
-    "methods": {"values", "helpers", "algorithms", "methods"},
-    "io": {"values", "helpers", "algorithms", "methods", "io"},
-    "apps": {"values", "algorithms", "methods", "io", "apps"},
+    "numeric": BASE,
+    "midpoint": BASE | {"midpoint"},
+    "spline": BASE | {"midpoint", "spline"},  # the solver starts from MCMD's surface
+    "fillers": BASE | {"spline", "fillers"},  # the surface between contour lines is a spline within bounds
+    "holes": BASE | {"holes"},
+    "points": BASE | {"points"},
+    "measure": BASE | {"measure"},
+    "render": BASE | {"render"},
+    "synthesis": BASE | {"midpoint", "synthesis"},  # generators end with MCMD
 }
+MAY_INCLUDE["methods"] = set().union(*MAY_INCLUDE.values()) | {"methods"}
+MAY_INCLUDE["io"] = MAY_INCLUDE["methods"] | {"io"}
+MAY_INCLUDE["apps"] = MAY_INCLUDE["io"] - {"numeric"} | {"apps"}
 
-# Other libraries, by the start of what stands between < and >, and the layers whose sources may
-# use them. Public headers use the standard library only.
+# Other libraries, by the start of what stands between < and >, and the folders whose sources may use them.
+# Public headers use the standard library only.
+COMPUTING = set(MAY_INCLUDE) - {"values", "io", "apps"}
 LIBRARIES = {
-    "fmt/": {"values", "helpers", "algorithms", "methods", "io", "apps"},
-    "tbb/": {"helpers", "algorithms"},
-    "Eigen/": {"helpers", "algorithms"},
-    "unsupported/Eigen/": {"helpers", "algorithms"},
+    "fmt/": set(MAY_INCLUDE),
+    "tbb/": COMPUTING - {"methods"},
+    "Eigen/": COMPUTING - {"methods"},
+    "unsupported/Eigen/": COMPUTING - {"methods"},
     "gdal": {"io"},
     "cpl_": {"io"},
     "ogr_": {"io"},
@@ -66,47 +45,66 @@ LIBRARIES = {
     "nlohmann/": {"apps"},
     "pybind11/": {"apps"},
 }
-POSIX = re.compile(r"(sys/\w+|unistd|fcntl|signal|stdlib|termios)\.h")  # the operating system: io and apps; memory: values
+POSIX = re.compile(r"(sys/\w+|unistd|fcntl|signal|stdlib|termios|dlfcn)\.h")  # io and apps; memory: values
 STANDARD = re.compile(r"\w+|std(def|int)\.h")  # the latter for C, in libdem.h
-
-OWNER = {part: owner for owner, parts in PARTS.items() for part in parts}
-LAYER_OF = {name: layer for layer, names in LAYERS.items() for name in names} | dict.fromkeys(OWNER, "algorithms")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 
 
-def layer_of(path):
-    """The layer of a file, given by its path below the root; None when the table lacks it."""
-    return "apps" if path.parts[0] == "apps" else LAYER_OF.get(path.stem)
+class House:
+    """Which folder each file belongs to."""
+
+    def __init__(self, root):
+        self.root = root
+        self.source = root / "libdem" / "src"
+        # A public header belongs to the folder that holds the source of its name; one without: values.
+        self.folder_of_source = {f.stem: f.relative_to(self.source).parts[0] for f in self.source.rglob("*.cpp")
+                                 if f.relative_to(self.source).parts[0] != "io"}
+
+    def folder(self, path):
+        """The folder of a file, given by its path below the root; None when it has none."""
+        if path.parts[0] == "apps":
+            return "apps"
+        if path.parts[1] == "src":
+            return path.parts[2] if path.parts[2] in MAY_INCLUDE and len(path.parts) > 3 else None
+        return self.folder_of_header("/".join(path.parts[2:]))
+
+    def folder_of_header(self, target):
+        if target == "libdem.h" or target.startswith("dem/io/"):
+            return "io"
+        return self.folder_of_source.get(pathlib.PurePosixPath(target).stem, "values")
+
+    def is_private(self, target):
+        return (self.source / target).exists()
 
 
-def fault(path, layer, quote, target):
+def fault(house, path, folder, quote, target):
     """What is wrong with one #include, or None."""
-    public = path.parts[:3] == ("libdem", "include", "dem")
+    public = path.parts[:2] == ("libdem", "include")
     if quote == '"':
-        if layer == "apps" and not target.startswith("dem/"):
-            return None  # a neighbour in the same folder
-        name = pathlib.PurePosixPath(target).stem
-        other = LAYER_OF.get(name)
-        if other is None:
-            return f"{target} is not in the table of layers"
-        if OWNER.get(name, name) == OWNER.get(path.stem, path.stem):
-            return None  # its own header, or within one algorithm
-        if (path.stem, name) in CALLS:
-            return None
-        if name in OWNER or other not in MAY_INCLUDE[layer]:
-            return f"{layer} must not include {target} ({other})"
-        if public and not target.startswith("dem/"):
+        if target == "libdem.h" or target.startswith("dem/"):
+            if not (house.root / "libdem" / "include" / target).exists():
+                return f"there is no {target}"
+            other = house.folder_of_header(target)
+            return None if other in MAY_INCLUDE[folder] else f"{folder} must not include {target} ({other})"
+        if folder == "apps":
+            return "apps must not include the private " + target if house.is_private(target) else None
+        if public:
             return f"a public header must not include the private {target}"
-        return None
+        if not house.is_private(target):
+            return f"there is no libdem/src/{target}; a private header is included with its folder"
+        other = target.split("/")[0]
+        if other == folder or other == "numeric" and "numeric" in MAY_INCLUDE[folder]:
+            return None
+        return f"{folder} must not include {target} ({other})"
     if STANDARD.fullmatch(target):
         return None
     if public:
         return f"a public header must not include <{target}>"
     if POSIX.fullmatch(target):
-        return None if layer in {"io", "apps"} or target == "sys/mman.h" and layer == "values" else f"{layer} must not include <{target}>"
-    for start, layers in LIBRARIES.items():
+        return None if folder in {"io", "apps"} or target == "sys/mman.h" and folder == "values" else f"{folder} must not include <{target}>"
+    for start, folders in LIBRARIES.items():
         if target.startswith(start):
-            return None if layer in layers else f"{layer} must not include <{target}>"
+            return None if folder in folders else f"{folder} must not include <{target}>"
     return f"<{target}> is not in the table of libraries"
 
 
@@ -117,59 +115,75 @@ def violations(root):
              if f.suffix in {".h", ".cpp"}]
     if not files:
         found.append(f"{root}: no source in libdem/ and apps/")
+    house = House(root)
     for file in files:
         path = file.relative_to(root)
-        layer = layer_of(path)
-        if layer is None:
-            found.append(f"{path}: not in the table of layers in scripts/check_layers.py")
+        folder = house.folder(path)
+        if folder is None:
+            found.append(f"{path}: lies in no folder that scripts/check_layers.py knows")
             continue
         text = file.read_text(encoding="utf-8")
         for match in INCLUDE.finditer(text):
-            if message := fault(path, layer, *match.groups()):
+            if message := fault(house, path, folder, *match.groups()):
                 found.append(f"{path}:{text.count(chr(10), 0, match.start(1)) + 1}: {message}")
     return found
+
+
+# A small house for the self-test: public headers, a private one, and the sources that give headers their folder.
+HOUSE = ["libdem/include/dem/raster.h", "libdem/include/dem/mcmd.h", "libdem/include/dem/sample.h",
+         "libdem/include/dem/methods.h", "libdem/include/dem/spline.h", "libdem/include/dem/dem.h",
+         "libdem/include/dem/io/rasters.h", "libdem/include/dem/io/methods.h", "libdem/src/values/raster.cpp",
+         "libdem/src/midpoint/mcmd.cpp", "libdem/src/midpoint/lattice.h", "libdem/src/measure/sample.cpp",
+         "libdem/src/spline/spline.cpp", "libdem/src/methods/methods.cpp", "libdem/src/numeric/parallel.h",
+         "libdem/src/io/raster/rasters.cpp"]
 
 
 def self_test():
     """Each planted violation must be found, and each allowed #include must pass."""
     planted = [
         ("libdem/include/dem/raster.h", '#include "dem/mcmd.h"'),
-        ("libdem/include/dem/io.h", "#include <gdal_priv.h>"),
-        ("libdem/include/dem/mcmd.h", '#include "parallel.h"'),
+        ("libdem/include/dem/raster.h", '#include "dem/io/rasters.h"'),
+        ("libdem/include/dem/io/rasters.h", "#include <gdal_priv.h>"),
+        ("libdem/include/dem/mcmd.h", '#include "numeric/parallel.h"'),
         ("libdem/include/dem/mcmd.h", "#include <fmt/format.h>"),
-        ("libdem/src/mcmd.cpp", '#include "dem/sample.h"'),
-        ("libdem/src/mcmd.cpp", '#include "dem/spline.h"'),
-        ("libdem/src/mcmd.cpp", '#include "dem/methods.h"'),
-        ("libdem/src/mcmd.cpp", '#include "dem/io.h"'),
-        ("libdem/src/mcmd.cpp", "#include <GeographicLib/Geodesic.hpp>"),
-        ("libdem/src/sample.cpp", "  #  include <cpl_conv.h>"),
-        ("libdem/src/parallel.h", '#include "dem/mcmd.h"'),
-        ("libdem/src/midpoint.h", '#include "dem/sample.h"'),
-        ("libdem/src/sample.cpp", '#include "lattice.h"'),
-        ("libdem/src/methods.cpp", '#include "lattice.h"'),
-        ("libdem/src/methods.cpp", '#include "dem/baselines.h"'),
-        ("libdem/src/methods.cpp", "#include <unistd.h>"),
-        ("libdem/src/io.cpp", "#include <boost/any.hpp>"),
-        ("libdem/src/unheard_of.cpp", "#include <vector>"),
-        ("libdem/src/io.cpp", '#include "unheard_of.h"'),
+        ("libdem/src/midpoint/mcmd.cpp", '#include "dem/sample.h"'),
+        ("libdem/src/midpoint/mcmd.cpp", '#include "dem/spline.h"'),
+        ("libdem/src/midpoint/mcmd.cpp", '#include "dem/methods.h"'),
+        ("libdem/src/midpoint/mcmd.cpp", '#include "dem/io/rasters.h"'),
+        ("libdem/src/midpoint/mcmd.cpp", "#include <GeographicLib/Geodesic.hpp>"),
+        ("libdem/src/measure/sample.cpp", "  #  include <cpl_conv.h>"),
+        ("libdem/src/numeric/parallel.h", '#include "dem/mcmd.h"'),
+        ("libdem/src/measure/sample.cpp", '#include "midpoint/lattice.h"'),
+        ("libdem/src/midpoint/mcmd.cpp", '#include "lattice.h"'),
+        ("libdem/src/methods/methods.cpp", '#include "midpoint/lattice.h"'),
+        ("libdem/src/methods/methods.cpp", '#include "dem/io/methods.h"'),
+        ("libdem/src/methods/methods.cpp", "#include <unistd.h>"),
+        ("libdem/src/io/raster/rasters.cpp", "#include <boost/any.hpp>"),
+        ("libdem/src/unheard_of/mcmd.cpp", "#include <vector>"),
+        ("libdem/src/loose.cpp", "#include <vector>"),
+        ("libdem/src/io/raster/rasters.cpp", '#include "dem/unheard_of.h"'),
         ("apps/dem/main.cpp", "#include <gdal.h>"),
-        ("apps/dem/main.cpp", '#include "dem/parallel.h"'),
+        ("apps/dem/main.cpp", '#include "numeric/parallel.h"'),
     ]
     allowed = [
         ("libdem/include/dem/mcmd.h", '#include "dem/dem.h"\n#include <vector>'),
-        ("libdem/src/mcmd.cpp", '#include "dem/mcmd.h"\n#include "parallel.h"\n#include <tbb/task_arena.h>'),
-        ("libdem/src/midpoint.h", '#include "dem/mcmd.h"\n#include "lattice.h"'),
-        ("libdem/src/methods.cpp", '#include "dem/mcmd.h"'),
-        ("libdem/src/baselines.cpp", '#include "dem/methods.h"\n#include <gdal_alg.h>'),
-        ("apps/dem/main.cpp", '#include "progress.h"\n#include "dem/io.h"\n#include <CLI/CLI.hpp>'),
+        ("libdem/src/midpoint/mcmd.cpp", '#include "dem/mcmd.h"\n#include "numeric/parallel.h"\n#include <tbb/task_arena.h>'),
+        ("libdem/src/midpoint/mcmd.cpp", '#include "dem/mcmd.h"\n#include "midpoint/lattice.h"'),
+        ("libdem/src/methods/methods.cpp", '#include "dem/mcmd.h"'),
+        ("libdem/src/io/methods.cpp", '#include "dem/io/methods.h"\n#include <gdal_alg.h>'),
+        ("apps/dem/main.cpp", '#include "progress.h"\n#include "dem/io/rasters.h"\n#include <CLI/CLI.hpp>'),
     ]
     for cases, count in (planted, 1), (allowed, 0):
         for path, text in cases:
             with tempfile.TemporaryDirectory() as folder:
-                file = pathlib.Path(folder, path)
-                file.parent.mkdir(parents=True)
+                root = pathlib.Path(folder)
+                for name in HOUSE:
+                    (root / name).parent.mkdir(parents=True, exist_ok=True)
+                    (root / name).touch()
+                file = root / path
+                file.parent.mkdir(parents=True, exist_ok=True)
                 file.write_text(text + "\n", encoding="utf-8")
-                found = violations(pathlib.Path(folder))
+                found = violations(root)
                 if len(found) != count:
                     sys.exit(f"self-test: {path} with {text!r}: {found}; must be {count} violations")
     print(f"self-test: {len(planted)} planted violations found, {len(allowed)} allowed files passed")

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "random.h"
+#include "numeric/random.h"
 
 namespace dem {
 namespace {

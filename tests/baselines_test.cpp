@@ -1,4 +1,4 @@
-#include "dem/baselines.h"
+#include "dem/io/methods.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "random.h"
+#include "numeric/random.h"
 
 namespace dem {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "dem/gridding.h"
 #include "dem/spline.h"
-#include "random.h"
+#include "numeric/random.h"
 
 namespace dem {
 namespace {

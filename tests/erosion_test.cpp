@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "random.h"
+#include "numeric/random.h"
 
 namespace dem {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "dem/methods.h"
-#include "random.h"
+#include "numeric/random.h"
 
 namespace dem {
 namespace {

@@ -1,4 +1,4 @@
-#include "dem/geodesy.h"
+#include "dem/io/geodesy.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "random.h"
+#include "numeric/random.h"
 
 namespace dem {
 namespace {

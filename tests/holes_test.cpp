@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "random.h"
+#include "numeric/random.h"
 
 namespace dem {
 namespace {

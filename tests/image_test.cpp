@@ -1,4 +1,4 @@
-#include "dem/image.h"
+#include "dem/io/image.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include <iterator>
 #include <stdexcept>
 
-#include "dem/io.h"
+#include "dem/io/rasters.h"
 
 namespace dem {
 namespace {

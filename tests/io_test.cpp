@@ -1,4 +1,4 @@
-#include "dem/io.h"
+#include "dem/io/rasters.h"
 
 #include <cpl_conv.h>
 #include <cpl_error.h>
@@ -20,7 +20,7 @@
 #include <functional>
 #include <limits>
 
-#include "dem/geodesy.h"
+#include "dem/io/geodesy.h"
 
 namespace dem {
 namespace {

@@ -1,4 +1,4 @@
-#include "dem/libdem.h"
+#include "libdem.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "dem/baselines.h"
-#include "dem/io.h"
+#include "dem/io/methods.h"
+#include "dem/io/rasters.h"
 #include "dem/spline.h"
 
 namespace {

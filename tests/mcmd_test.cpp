@@ -10,8 +10,8 @@
 #include <unordered_map>
 
 #include "dem/evaluate.h"
-#include "lattice.h"
-#include "random.h"
+#include "midpoint/lattice.h"
+#include "numeric/random.h"
 
 namespace dem {
 namespace {

@@ -7,8 +7,8 @@
 #include <numeric>
 #include <set>
 
-#include "flood.h"
-#include "growth.h"
+#include "synthesis/flood.h"
+#include "synthesis/growth.h"
 
 namespace dem {
 namespace {

@@ -46,7 +46,7 @@ class Package(unittest.TestCase):
     def test_holds_manual_completion_library_and_licence(self):
         for path in ("usr/share/man/man1/dem.1.gz", "usr/share/man/man1/dem-fill.1.gz",
                      "usr/share/bash-completion/completions/dem", "usr/share/zsh/vendor-completions/_dem",
-                     "usr/share/fish/vendor_completions.d/dem.fish", "usr/include/dem/libdem.h",
+                     "usr/share/fish/vendor_completions.d/dem.fish", "usr/include/libdem.h",
                      "usr/lib/pkgconfig/dem.pc", "usr/lib/cmake/libdem/libdem-config.cmake",
                      "usr/share/doc/libdem/copyright"):
             self.assertTrue((self.root / path).exists(), path)

@@ -1,4 +1,4 @@
-#include "dem/point_files.h"
+#include "dem/io/point_files.h"
 
 #include <gdal.h>
 #include <gmock/gmock.h>
@@ -11,8 +11,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "dem/io.h"
-#include "dem/lattices.h"
+#include "dem/io/lattices.h"
+#include "dem/io/rasters.h"
 
 namespace dem {
 namespace {

@@ -8,7 +8,7 @@
 #include <map>
 
 #include "dem/gridding.h"
-#include "random.h"
+#include "numeric/random.h"
 
 namespace dem {
 namespace {

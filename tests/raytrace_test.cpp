@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "random.h"
+#include "numeric/random.h"
 
 #ifdef DEM_EMBREE
 #include <embree3/rtcore.h>

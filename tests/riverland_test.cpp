@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <deque>
 
-#include "riverland_parts.h"
+#include "synthesis/riverland_parts.h"
 
 namespace dem {
 namespace {

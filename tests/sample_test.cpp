@@ -9,7 +9,7 @@
 #include <map>
 #include <stdexcept>
 
-#include "random.h"
+#include "numeric/random.h"
 
 namespace dem {
 namespace {

@@ -10,10 +10,10 @@
 #include <string>
 
 #include "dem/breaklines.h"
-#include "multigrid.h"
-#include "random.h"
-#include "springs.h"
-#include "tensor.h"
+#include "numeric/random.h"
+#include "spline/multigrid.h"
+#include "spline/springs.h"
+#include "spline/tensor.h"
 
 namespace dem {
 namespace {

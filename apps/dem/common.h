@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "dem/dem.h"
-#include "dem/io.h"
+#include "dem/io/rasters.h"
 #include "dem/run.h"
 #include "progress.h"
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dem/geodesy.h"
+#include "dem/io/geodesy.h"
 #include "report/evaluate_report.h"
 #include "scores.h"
 #include "verbs.h"

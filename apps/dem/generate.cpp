@@ -6,8 +6,8 @@
 #include <cmath>
 #include <optional>
 
-#include "dem/drawing.h"
 #include "dem/generators.h"
+#include "dem/io/drawing.h"
 #include "places.h"
 #include "verbs.h"
 

@@ -5,12 +5,12 @@
 #include <chrono>
 #include <optional>
 
-#include "dem/baselines.h"
 #include "dem/contours.h"
 #include "dem/gridding.h"
-#include "dem/lattices.h"
-#include "dem/point_files.h"
-#include "dem/polygons.h"
+#include "dem/io/lattices.h"
+#include "dem/io/methods.h"
+#include "dem/io/point_files.h"
+#include "dem/io/polygons.h"
 #include "verbs.h"
 
 namespace dem::app {

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dem/geodesy.h"
 #include "dem/holes.h"
-#include "dem/polygons.h"
+#include "dem/io/geodesy.h"
+#include "dem/io/polygons.h"
 #include "verbs.h"
 
 namespace dem::app {

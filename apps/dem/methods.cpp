@@ -4,10 +4,10 @@
 
 #include <CLI/CLI.hpp>
 
-#include "dem/baselines.h"
 #include "dem/draw.h"
 #include "dem/erosion.h"
 #include "dem/generators.h"
+#include "dem/io/methods.h"
 #include "dem/raytrace.h"
 #include "manual/outline.h"
 #include "verbs.h"

@@ -1,7 +1,7 @@
 #include "places.h"
 
 #include "common.h"
-#include "dem/geodesy.h"
+#include "dem/io/geodesy.h"
 
 namespace dem::app {
 

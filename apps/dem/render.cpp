@@ -6,7 +6,7 @@
 #include <map>
 
 #include "dem/draw.h"
-#include "dem/image.h"
+#include "dem/io/image.h"
 #include "dem/raytrace.h"
 #include "places.h"
 #include "verbs.h"

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dem/baselines.h"
 #include "dem/greedy.h"
+#include "dem/io/methods.h"
 #include "verbs.h"
 
 namespace dem::app {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "dem/geodesy.h"
+#include "dem/io/geodesy.h"
 
 namespace dem::app {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "dem/baselines.h"
+#include "dem/io/methods.h"
 #include "verbs.h"
 
 namespace dem::app {

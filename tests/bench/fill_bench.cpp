@@ -25,9 +25,9 @@
 #include <string>
 #include <vector>
 
-#include "dem/baselines.h"
 #include "dem/evaluate.h"
-#include "dem/io.h"
+#include "dem/io/methods.h"
+#include "dem/io/rasters.h"
 #include "dem/mcmd.h"
 #include "dem/sample.h"
 

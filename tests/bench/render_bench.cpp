@@ -22,7 +22,7 @@
 #include <string>
 #include <vector>
 
-#include "dem/io.h"
+#include "dem/io/rasters.h"
 #include "dem/mcmd.h"
 #include "dem/raytrace.h"
 

@@ -3,8 +3,8 @@
 #include <cstdio>
 #include <string>
 
-#include "dem/baselines.h"
-#include "dem/io.h"
+#include "dem/io/methods.h"
+#include "dem/io/rasters.h"
 
 int main(int argc, char** argv) {
   if (argc != 2) return 1;

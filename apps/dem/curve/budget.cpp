@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dem/baselines.h"
 #include "dem/greedy.h"
+#include "dem/io/methods.h"
 #include "dem/sample.h"
 
 namespace dem::app {

@@ -8,8 +8,8 @@
 #include <map>
 #include <set>
 
-#include "dem/baselines.h"
-#include "dem/geodesy.h"
+#include "dem/io/geodesy.h"
+#include "dem/io/methods.h"
 #include "dem/sample.h"
 
 namespace dem::app {

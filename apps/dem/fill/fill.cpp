@@ -6,8 +6,8 @@
 #include <optional>
 #include <tuple>
 
-#include "dem/baselines.h"
 #include "dem/contours.h"
+#include "dem/io/methods.h"
 #include "fill/hole_fill.h"
 #include "fill/stream_fill.h"
 #include "report/fill_report.h"

@@ -7,8 +7,8 @@
 
 #include "common.h"
 #include "dem/holes.h"
-#include "dem/polygons.h"
-#include "dem/raster_stream.h"
+#include "dem/io/polygons.h"
+#include "dem/io/raster_stream.h"
 
 namespace dem::app {
 

@@ -4,8 +4,8 @@
 #include <chrono>
 #include <cmath>
 
-#include "dem/geodesy.h"
-#include "dem/polygons.h"
+#include "dem/io/geodesy.h"
+#include "dem/io/polygons.h"
 
 namespace dem::app {
 namespace {

@@ -9,7 +9,7 @@
 #include <map>
 #include <span>
 
-#include "dem/io.h"
+#include "dem/io/rasters.h"
 #include "fill/bytes.h"
 
 namespace dem::app {

@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <iterator>
 
-#include "dem/geodesy.h"
-#include "dem/polygons.h"
+#include "dem/io/geodesy.h"
+#include "dem/io/polygons.h"
 #include "fill/tasks.h"
 
 namespace dem::app {

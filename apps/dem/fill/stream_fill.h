@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "dem/raster_stream.h"
+#include "dem/io/raster_stream.h"
 #include "fill/hole_fill.h"
 #include "fill/journal.h"
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <map>
 
-#include "dem/geodesy.h"
+#include "dem/io/geodesy.h"
 #include "fill/bytes.h"
 #include "fill/fill_layers.h"
 #include "fill/stream_fill.h"

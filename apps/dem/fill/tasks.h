@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "dem/hole_parts.h"
-#include "dem/raster_stream.h"
+#include "dem/io/raster_stream.h"
 #include "fill/hole_fill.h"
 #include "fill/journal.h"
 

@@ -6,8 +6,8 @@
 #include <sstream>
 #include <string_view>
 
-#include "dem/baselines.h"
 #include "dem/generators.h"
+#include "dem/io/methods.h"
 
 namespace dem::app {
 namespace {

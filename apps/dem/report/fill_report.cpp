@@ -8,7 +8,7 @@
 
 #include "dem/breakdown.h"
 #include "dem/evaluate.h"
-#include "dem/geodesy.h"
+#include "dem/io/geodesy.h"
 #include "report/pictures.h"
 
 namespace dem::app {

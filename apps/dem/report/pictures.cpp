@@ -5,7 +5,7 @@
 
 #include "dem/breakdown.h"
 #include "dem/evaluate.h"
-#include "dem/image.h"
+#include "dem/io/image.h"
 #include "dem/mcmd.h"
 
 namespace dem::app {

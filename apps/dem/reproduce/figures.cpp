@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "curve/chart.h"
-#include "dem/image.h"
+#include "dem/io/image.h"
 #include "reproduce/reproduce.h"
 #include "reproduce/sketches.h"
 

@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "curve/experiment.h"
-#include "dem/geodesy.h"
+#include "dem/io/geodesy.h"
 #include "dem/sample.h"
 #include "dem/spline.h"
 #include "reproduce/reproduce.h"

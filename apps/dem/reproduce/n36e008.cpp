@@ -5,10 +5,10 @@
 #include <filesystem>
 #include <iterator>
 
-#include "dem/baselines.h"
 #include "dem/evaluate.h"
-#include "dem/geodesy.h"
 #include "dem/holes.h"
+#include "dem/io/geodesy.h"
+#include "dem/io/methods.h"
 #include "dem/sample.h"
 #include "reproduce/reproduce.h"
 

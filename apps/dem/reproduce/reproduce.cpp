@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <regex>
 
-#include "dem/geodesy.h"
-#include "dem/image.h"
+#include "dem/io/geodesy.h"
+#include "dem/io/image.h"
 #include "dem/methods.h"
 
 namespace dem::app {

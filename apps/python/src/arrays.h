@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "dem/io.h"
+#include "dem/io/rasters.h"
 
 namespace dem::python {
 

@@ -9,7 +9,7 @@
 #include "arrays.h"
 #include "bind.h"
 #include "call.h"
-#include "dem/geodesy.h"
+#include "dem/io/geodesy.h"
 #include "dem/outliers.h"
 
 namespace dem::python {

@@ -3,7 +3,7 @@
 #include <pybind11/pybind11.h>
 
 #include "bind.h"
-#include "dem/io.h"
+#include "dem/io/rasters.h"
 #include "dem/run.h"
 
 namespace py = pybind11;

@@ -7,7 +7,7 @@
 
 #include "bind.h"
 #include "call.h"
-#include "dem/raster_stream.h"
+#include "dem/io/raster_stream.h"
 #include "fill/stream_fill.h"
 #include "fill/tasks.h"
 #include "settings.h"

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "dem/baselines.h"
 #include "dem/generators.h"
+#include "dem/io/methods.h"
 
 namespace dem::python {
 

@@ -3,10 +3,10 @@
 #include <pybind11/stl.h>
 
 #include "bind.h"
-#include "dem/baselines.h"
 #include "dem/draw.h"
 #include "dem/erosion.h"
 #include "dem/generators.h"
+#include "dem/io/methods.h"
 #include "dem/raytrace.h"
 
 namespace dem::python {

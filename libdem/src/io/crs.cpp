@@ -1,4 +1,4 @@
-#include "crs.h"
+#include "io/crs.h"
 
 #include <fmt/format.h>
 #include <ogr_spatialref.h>
@@ -7,8 +7,8 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "dem/geodesy.h"
-#include "gdal_support.h"
+#include "dem/io/geodesy.h"
+#include "io/gdal_support.h"
 
 namespace dem {
 namespace {

@@ -1,4 +1,4 @@
-#include "dem/drawing.h"
+#include "dem/io/drawing.h"
 
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imagebufalgo.h>
@@ -13,10 +13,10 @@
 #include <utility>
 #include <vector>
 
-#include "dem/io.h"
-#include "gdal_support.h"
-#include "ogr_layers.h"
-#include "oiio_support.h"
+#include "dem/io/rasters.h"
+#include "io/gdal_support.h"
+#include "io/oiio_support.h"
+#include "io/points/ogr_layers.h"
 
 namespace dem {
 namespace {

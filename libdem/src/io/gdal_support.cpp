@@ -1,4 +1,4 @@
-#include "gdal_support.h"
+#include "io/gdal_support.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <new>
 
-#include "dem/io.h"
+#include "dem/io/rasters.h"
 
 namespace dem {
 

@@ -1,4 +1,4 @@
-#include "dem/geodesy.h"
+#include "dem/io/geodesy.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "crs.h"
+#include "io/crs.h"
 
 namespace dem {
 namespace {

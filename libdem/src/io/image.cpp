@@ -1,11 +1,11 @@
-#include "dem/image.h"
+#include "dem/io/image.h"
 
 #include <OpenImageIO/filesystem.h>
 
 #include <stdexcept>
 
-#include "dem/io.h"
-#include "oiio_support.h"
+#include "dem/io/rasters.h"
+#include "io/oiio_support.h"
 
 namespace dem {
 namespace {

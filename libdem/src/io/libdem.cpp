@@ -1,7 +1,7 @@
 // The C interface: every function is a library call behind a wall that turns exceptions into a
 // status and a line of text.
 
-#include "dem/libdem.h"
+#include "libdem.h"
 
 #include <fmt/format.h>
 
@@ -13,9 +13,9 @@
 #include <span>
 #include <stdexcept>
 
-#include "dem/baselines.h"
-#include "dem/geodesy.h"
-#include "dem/io.h"
+#include "dem/io/geodesy.h"
+#include "dem/io/methods.h"
+#include "dem/io/rasters.h"
 
 struct libdem_dem {
   dem::Dem dem;

@@ -1,13 +1,13 @@
-#include "oiio_support.h"
+#include "io/oiio_support.h"
 
 #include <OpenImageIO/filesystem.h>
 
 #include <algorithm>
 #include <vector>
 
-#include "dem/io.h"
-#include "gdal_support.h"
-#include "staged_file.h"
+#include "dem/io/rasters.h"
+#include "io/gdal_support.h"
+#include "io/staged_file.h"
 
 namespace dem {
 

@@ -1,4 +1,4 @@
-#include "dem/polygons.h"
+#include "dem/io/polygons.h"
 
 #include <cpl_string.h>
 #include <fmt/format.h>
@@ -10,9 +10,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dem/io.h"
-#include "gdal_support.h"
-#include "staged_file.h"
+#include "dem/io/rasters.h"
+#include "io/gdal_support.h"
+#include "io/staged_file.h"
 
 namespace dem {
 namespace {

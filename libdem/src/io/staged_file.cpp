@@ -1,4 +1,4 @@
-#include "staged_file.h"
+#include "io/staged_file.h"
 
 #include <fmt/format.h>
 #include <stdlib.h>
@@ -10,7 +10,7 @@
 #include <fstream>
 #include <system_error>
 
-#include "dem/io.h"
+#include "dem/io/rasters.h"
 
 namespace dem {
 namespace fs = std::filesystem;

@@ -1,11 +1,11 @@
-#include "contour_sides.h"
+#include "midpoint/contour_sides.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
 
-#include "parallel.h"
+#include "numeric/parallel.h"
 
 namespace dem {
 namespace {

@@ -6,9 +6,9 @@
 #include <limits>
 #include <stdexcept>
 
-#include "contour_sides.h"
-#include "midpoint.h"
-#include "row_kernels.h"
+#include "midpoint/contour_sides.h"
+#include "midpoint/midpoint.h"
+#include "midpoint/row_kernels.h"
 
 namespace dem {
 namespace {

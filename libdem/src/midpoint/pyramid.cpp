@@ -21,11 +21,11 @@
 #include <utility>
 #include <vector>
 
-#include "lattice.h"
-#include "midpoint.h"
-#include "parallel.h"
-#include "random.h"
-#include "row_kernels.h"
+#include "midpoint/lattice.h"
+#include "midpoint/midpoint.h"
+#include "midpoint/row_kernels.h"
+#include "numeric/parallel.h"
+#include "numeric/random.h"
 
 namespace dem {
 

@@ -1,9 +1,9 @@
-#include "row_kernels.h"
+#include "midpoint/row_kernels.h"
 
 #include <algorithm>
 #include <limits>
 
-#include "vectorised.h"
+#include "numeric/vectorised.h"
 
 namespace dem {
 namespace {

@@ -3,10 +3,10 @@
 #include <cmath>
 #include <vector>
 
-#include "lattice.h"
-#include "midpoint.h"
-#include "parallel.h"
-#include "random.h"
+#include "midpoint/lattice.h"
+#include "midpoint/midpoint.h"
+#include "numeric/parallel.h"
+#include "numeric/random.h"
 
 namespace dem {
 namespace {

@@ -1,10 +1,10 @@
-#include "cuts.h"
+#include "spline/cuts.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "dem/breaklines.h"
-#include "parallel.h"
+#include "numeric/parallel.h"
 
 namespace dem {
 namespace {

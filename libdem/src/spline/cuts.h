@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "dem/dem.h"
-#include "springs.h"
+#include "spline/springs.h"
 
 namespace dem {
 

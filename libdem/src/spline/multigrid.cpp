@@ -1,9 +1,9 @@
-#include "multigrid.h"
+#include "spline/multigrid.h"
 
 #include <cmath>
 #include <limits>
 
-#include "parallel.h"
+#include "numeric/parallel.h"
 
 namespace dem {
 namespace {

@@ -5,9 +5,9 @@
 #include <array>
 #include <vector>
 
-#include "cuts.h"
-#include "grid.h"
-#include "springs.h"
+#include "spline/cuts.h"
+#include "spline/grid.h"
+#include "spline/springs.h"
 
 namespace dem {
 

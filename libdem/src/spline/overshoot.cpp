@@ -1,4 +1,4 @@
-#include "overshoot.h"
+#include "spline/overshoot.h"
 
 #include <algorithm>
 #include <cmath>

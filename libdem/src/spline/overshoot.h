@@ -3,7 +3,7 @@
 // for the gaps they span. Private to the library.
 
 #include "dem/raster.h"
-#include "grid.h"
+#include "spline/grid.h"
 
 namespace dem {
 

@@ -1,10 +1,10 @@
-#include "roughness.h"
+#include "spline/roughness.h"
 
 #include <cmath>
 
 #include "dem/breaklines.h"
 #include "dem/mcmd.h"
-#include "parallel.h"
+#include "numeric/parallel.h"
 
 namespace dem {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "dem/dem.h"
 #include "dem/run.h"
-#include "grid.h"
+#include "spline/grid.h"
 
 namespace dem {
 

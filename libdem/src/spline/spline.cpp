@@ -9,12 +9,12 @@
 
 #include "dem/breaklines.h"
 #include "dem/mcmd.h"
-#include "overshoot.h"
-#include "parallel.h"
-#include "roughness.h"
-#include "spline_parameters.h"
-#include "spline_sample.h"
-#include "spline_solver.h"
+#include "numeric/parallel.h"
+#include "spline/overshoot.h"
+#include "spline/roughness.h"
+#include "spline/spline_parameters.h"
+#include "spline/spline_sample.h"
+#include "spline/spline_solver.h"
 
 namespace dem {
 namespace {

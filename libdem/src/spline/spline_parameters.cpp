@@ -1,4 +1,4 @@
-#include "spline_parameters.h"
+#include "spline/spline_parameters.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,10 +7,10 @@
 
 #include "dem/breaklines.h"
 #include "dem/mcmd.h"
-#include "lie_together.h"
-#include "parallel.h"
-#include "random.h"
-#include "spline_solver.h"
+#include "numeric/lie_together.h"
+#include "numeric/parallel.h"
+#include "numeric/random.h"
+#include "spline/spline_solver.h"
 
 namespace dem {
 namespace {

@@ -1,10 +1,10 @@
-#include "spline_sample.h"
+#include "spline/spline_sample.h"
 
 #include <cmath>
 
 #include "dem/breaklines.h"
-#include "parallel.h"
-#include "random.h"
+#include "numeric/parallel.h"
+#include "numeric/random.h"
 
 namespace dem {
 namespace {

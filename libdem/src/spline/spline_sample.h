@@ -5,8 +5,8 @@
 #include <cstdint>
 
 #include "dem/raster.h"
-#include "grid.h"
-#include "springs.h"
+#include "spline/grid.h"
+#include "spline/springs.h"
 
 namespace dem {
 

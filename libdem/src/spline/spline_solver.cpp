@@ -1,9 +1,9 @@
-#include "spline_solver.h"
+#include "spline/spline_solver.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "parallel.h"
+#include "numeric/parallel.h"
 
 namespace dem {
 namespace {

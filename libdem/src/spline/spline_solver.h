@@ -2,8 +2,8 @@
 // Conjugate gradients on the spline's normal equations. Private to the library.
 
 #include "dem/run.h"
-#include "multigrid.h"
-#include "tensor.h"
+#include "spline/multigrid.h"
+#include "spline/tensor.h"
 
 namespace dem {
 

@@ -1,4 +1,4 @@
-#include "springs.h"
+#include "spline/springs.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,10 @@
-#include "tensor.h"
+#include "spline/tensor.h"
 
 #include <cmath>
 #include <numbers>
 
-#include "multigrid.h"
-#include "parallel.h"
+#include "numeric/parallel.h"
+#include "spline/multigrid.h"
 
 namespace dem {
 namespace {

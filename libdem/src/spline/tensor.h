@@ -6,7 +6,7 @@
 #include <array>
 #include <cstdint>
 
-#include "grid.h"
+#include "spline/grid.h"
 
 namespace dem {
 

@@ -12,8 +12,8 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "parallel.h"
-#include "vectorised.h"
+#include "numeric/parallel.h"
+#include "numeric/vectorised.h"
 
 namespace dem {
 namespace {

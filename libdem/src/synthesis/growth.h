@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "dem/networks.h"
-#include "paths.h"
+#include "synthesis/paths.h"
 
 namespace dem {
 

@@ -11,7 +11,7 @@
 #include <string_view>
 
 #include "dem/sketch.h"
-#include "paths.h"
+#include "synthesis/paths.h"
 
 namespace dem {
 namespace {

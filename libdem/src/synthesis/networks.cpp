@@ -9,8 +9,8 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "flood.h"
-#include "growth.h"
+#include "synthesis/flood.h"
+#include "synthesis/growth.h"
 
 namespace dem {
 namespace {

@@ -7,9 +7,9 @@
 #include <span>
 #include <stdexcept>
 
-#include "parallel.h"
-#include "random.h"
-#include "vectorised.h"
+#include "numeric/parallel.h"
+#include "numeric/random.h"
+#include "numeric/vectorised.h"
 
 namespace dem {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "flood.h"
-#include "growth.h"
+#include "synthesis/flood.h"
+#include "synthesis/growth.h"
 
 namespace dem {
 namespace {

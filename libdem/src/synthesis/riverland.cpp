@@ -6,8 +6,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "flood.h"
-#include "riverland_parts.h"
+#include "synthesis/flood.h"
+#include "synthesis/riverland_parts.h"
 
 namespace dem {
 namespace {

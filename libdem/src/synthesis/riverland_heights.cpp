@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "flood.h"
-#include "riverland_parts.h"
+#include "synthesis/flood.h"
+#include "synthesis/riverland_parts.h"
 
 namespace dem {
 namespace {

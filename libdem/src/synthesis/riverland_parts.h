@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "dem/riverland.h"
-#include "paths.h"
+#include "synthesis/paths.h"
 
 namespace dem {
 

@@ -8,8 +8,8 @@
 #include <stdexcept>
 
 #include "dem/mcmd.h"
-#include "flood.h"
-#include "riverland_parts.h"
+#include "synthesis/flood.h"
+#include "synthesis/riverland_parts.h"
 
 namespace dem {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "riverland_parts.h"
+#include "synthesis/riverland_parts.h"
 
 namespace dem {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "growth.h"
+#include "synthesis/growth.h"
 
 namespace dem {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "paths.h"
+#include "synthesis/paths.h"
 
 namespace dem {
 namespace {

@@ -1,0 +1,132 @@
+#include "dem/io/methods.h"
+
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imagebufalgo.h>
+#include <fmt/format.h>
+#include <gdal_alg.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "io/gdal_support.h"
+#include "io/oiio_support.h"
+
+namespace dem {
+namespace {
+
+/// The result of another library, with known cells bit for bit again whatever it did to them.
+/// Every cell must be a number.
+Filled finish(const Dem& dem, Raster<float> z) {
+  const auto known = dem.known.cells();
+  const auto from = dem.z.cells();
+  const auto to = z.cells();
+  std::size_t left = 0;
+  for (std::size_t i = 0; i < to.size(); ++i) {
+    if (known[i]) to[i] = from[i];
+    left += !std::isfinite(to[i]);
+  }
+  if (left) throw std::runtime_error(fmt::format("{} cells were left unfilled", left));
+  Filled filled;
+  filled.z = std::move(z);
+  return filled;
+}
+
+// --- GDAL ------------------------------------------------------------------------------------
+
+struct IdwOptions {
+  int smoothing_passes = 0;
+};
+
+std::vector<Field> fields(IdwOptions& o) {
+  return {{"smoothing_passes",
+           o.smoothing_passes,
+           {0, 1000},
+           "",
+           "3 x 3 mean filter over the filled cells, so many times"}};
+}
+
+Filled fill_idw(const Dem& dem, const IdwOptions& options, const Run& run) {
+  check_fillable(dem);
+  IdwOptions checked = options;
+  check(fields(checked));
+
+  Raster<float> z = dem.z;
+  Mask known = dem.known;
+  for (std::size_t i = 0; i < z.cells().size(); ++i)
+    if (!known.cells()[i]) z.cells()[i] = std::numeric_limits<float>::quiet_NaN();
+  const auto [cols, rows] = dem.size();
+  const DatasetPtr heights = wrap_cells(z.cells().data(), cols, rows, GDT_Float32);
+  const DatasetPtr mask = wrap_cells(known.cells().data(), cols, rows, GDT_Byte);
+
+  const GdalErrors errors;
+  GdalProgress progress(run, "idw");
+  char in_memory[] = "TEMP_FILE_DRIVER=MEM";
+  char* list[] = {in_memory, nullptr};
+  const CPLErr error =
+      GDALFillNodata(GDALGetRasterBand(heights.get(), 1), GDALGetRasterBand(mask.get(), 1),
+                     std::ceil(std::hypot(cols, rows)), 0, options.smoothing_passes, list,
+                     GdalProgress::call, &progress);
+  progress.rethrow();
+  if (error != CE_None) throw std::runtime_error("GDALFillNodata: " + errors.first());
+  return finish(dem, std::move(z));
+}
+
+// --- OpenImageIO -------------------------------------------------------------------------------
+
+struct PushPullOptions {};
+
+std::vector<Field> fields(PushPullOptions&) { return {}; }
+
+Filled fill_pushpull(const Dem& dem, const PushPullOptions&, const Run& run) {
+  check_fillable(dem);
+  run.report(0, "pushpull");
+
+  // Two channels, height and alpha; alpha 0 (and height 0, as colours come multiplied) is a hole.
+  const auto [cols, rows] = dem.size();
+  OIIO::ImageSpec spec(cols, rows, 2, OIIO::TypeDesc::FLOAT);
+  spec.channelnames = {"Z", "A"};
+  spec.alpha_channel = 1;
+  std::vector<float> pixels(2 * dem.size().cells());
+  for (std::size_t i = 0; i < dem.size().cells(); ++i)
+    if (dem.known.cells()[i]) {
+      pixels[2 * i] = dem.z.cells()[i];
+      pixels[2 * i + 1] = 1;
+    }
+  const OIIO::ImageBuf holes(spec, pixels.data());
+  OIIO::ImageBuf filled;
+  if (!OIIO::ImageBufAlgo::fillholes_pushpull(filled, holes, {}, run.threads))
+    throw std::runtime_error("fillholes_pushpull: " + one_line(filled.geterror()));
+  run.report(0.9, "pushpull");
+
+  Raster<float> z(dem.size());
+  if (!filled.get_pixels(OIIO::ROI(0, cols, 0, rows, 0, 1, 0, 1), OIIO::TypeDesc::FLOAT,
+                         z.cells().data()))
+    throw std::runtime_error("fillholes_pushpull: " + one_line(filled.geterror()));
+  run.report(1, "pushpull");
+  return finish(dem, std::move(z));
+}
+
+}  // namespace
+
+const std::vector<FillMethod>& baseline_methods() {
+  static const std::vector<FillMethod> table{
+      make_method<IdwOptions>("idw", "inverse distance by GDAL's FillNodata, no distance limit", "",
+                              {}, fill_idw),
+      make_method<PushPullOptions>("pushpull", "push-pull pyramid by OpenImageIO", "gortler1996",
+                                   {}, fill_pushpull)};
+  return table;
+}
+
+const std::vector<FillMethod>& all_fill_methods() {
+  static const std::vector<FillMethod> table = [] {
+    std::vector<FillMethod> all = fill_methods();
+    const auto& others = baseline_methods();
+    all.insert(all.end(), others.begin(), others.end());
+    return all;
+  }();
+  return table;
+}
+
+}  // namespace dem

@@ -1,0 +1,173 @@
+#include "dem/io/point_files.h"
+
+#include <fmt/format.h>
+#include <ogr_srs_api.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+
+#include "dem/io/rasters.h"
+#include "io/crs.h"
+#include "io/gdal_support.h"
+#include "io/points/point_reading.h"
+#include "io/staged_file.h"
+
+namespace dem {
+namespace {
+
+struct DestroyCrs {
+  void operator()(void* crs) const { OSRDestroySpatialReference(crs); }
+};
+using CrsPtr = std::unique_ptr<void, DestroyCrs>;
+
+struct DestroyTransformation {
+  void operator()(OGRCoordinateTransformationH t) const { OCTDestroyCoordinateTransformation(t); }
+};
+using TransformationPtr =
+    std::unique_ptr<std::remove_pointer_t<OGRCoordinateTransformationH>, DestroyTransformation>;
+
+/// x is always east or longitude, y north or latitude.
+CrsPtr parse_crs(const std::string& text) {
+  const GdalErrors quiet;
+  CrsPtr crs(OSRNewSpatialReference(nullptr));
+  if (OSRSetFromUserInput(crs.get(), text.c_str()) != OGRERR_NONE)
+    throw std::invalid_argument(fmt::format(
+        "crs = {}; must be a coordinate system, e.g. EPSG:25832, PROJ or WKT", text.substr(0, 60)));
+  OSRSetAxisMappingStrategy(crs.get(), OAMS_TRADITIONAL_GIS_ORDER);
+  return crs;
+}
+
+bool same_crs(const std::string& a, const std::string& b) {
+  return a == b || OSRIsSame(parse_crs(a).get(), parse_crs(b).get()) != 0;
+}
+
+/// A latitude beyond 90 degrees: x and y are the wrong way round, or no degrees at all.
+void check_degrees(const std::string& path, const Points& points) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double x = points.x[i], y = points.y[i];
+    if (std::abs(y) <= 90 && std::abs(x) <= 360) continue;
+    if (std::abs(x) <= 90 && std::abs(y) <= 360)
+      throw IoError(path,
+                    fmt::format("x = {}, y = {}: y is no latitude; longitude and latitude are "
+                                "the wrong way round (name the columns: --x-field, --y-field)",
+                                x, y));
+    throw IoError(path,
+                  fmt::format("x = {}, y = {} are no longitude and latitude; give --crs", x, y));
+  }
+}
+
+/// From the points' system to the one asked for.
+class Bridge {
+ public:
+  Bridge(std::string path, std::string to) : path_(std::move(path)), to_(std::move(to)) {}
+
+  /// Called with the first part, when the source's system is known.
+  void open(PointSource& source) {
+    opened_ = true;
+    degrees_ = !source.crs_wkt.empty() && crs_units(source.crs_wkt).geographic;
+    if (to_.empty()) return;
+    if (source.crs_wkt.empty()) {
+      source.notes.push_back("no coordinate system: taken as " + crs_name(to_));
+    } else if (!same_crs(source.crs_wkt, to_)) {
+      const GdalErrors errors;
+      transformation_.reset(
+          OCTNewCoordinateTransformation(parse_crs(source.crs_wkt).get(), parse_crs(to_).get()));
+      if (!transformation_) errors.fail(path_, "cannot be brought to " + crs_name(to_));
+      source.notes.push_back(fmt::format("from {} to {}", crs_name(source.crs_wkt), crs_name(to_)));
+    }
+    source.crs_wkt = to_;
+  }
+  bool opened() const { return opened_; }
+
+  void cross(Points& points) const {
+    if (degrees_) check_degrees(path_, points);
+    if (!transformation_) return;
+    const GdalErrors errors;
+    std::vector<int> good(points.size(), 0);
+    OCTTransformEx(transformation_.get(), int(points.size()), points.x.data(), points.y.data(),
+                   nullptr, good.data());
+    const auto bad = std::ranges::find(good, 0);
+    if (bad != good.end())
+      errors.fail(path_, fmt::format("a point cannot be brought to {}", crs_name(to_)));
+  }
+
+ private:
+  std::string path_, to_;
+  TransformationPtr transformation_;
+  bool opened_ = false, degrees_ = false;
+};
+
+bool has_las_signature(const std::string& path) {
+  const GdalErrors quiet;
+  VSILFILE* file = VSIFOpenL(path.c_str(), "rb");
+  if (file == nullptr) return false;
+  std::array<char, 4> start{};
+  const bool read = VSIFReadL(start.data(), 1, 4, file) == 4;
+  VSIFCloseL(file);
+  return read && std::string_view(start.data(), 4) == "LASF";
+}
+
+bool is_text_name(const std::string& path) {
+  constexpr std::array names{".csv", ".txt", ".tsv", ".tab", ".xyz", ".dat", ".asc", ".pts"};
+  std::string name = path;
+  if (extension(name) == ".gz") name.resize(name.size() - 3);
+  return path == "-" || path.starts_with("/vsistdin") ||
+         std::ranges::find(names, extension(name)) != names.end();
+}
+
+}  // namespace
+
+std::string wgs84() { return crs_from_text("EPSG:4326"); }
+
+std::string crs_from_text(const std::string& text) {
+  const CrsPtr crs = parse_crs(text);
+  char* wkt = nullptr;
+  OSRExportToWkt(crs.get(), &wkt);
+  const std::unique_ptr<char, decltype(&VSIFree)> owned(wkt, VSIFree);
+  return wkt == nullptr ? "" : wkt;
+}
+
+std::string crs_name(const std::string& crs_wkt) {
+  if (crs_wkt.empty()) return "none";
+  const char* name = OSRGetName(parse_crs(crs_wkt).get());
+  return name == nullptr ? "unnamed" : name;
+}
+
+PointSource read_points(const std::string& path, const PointReadOptions& options,
+                        const PointSink& sink, const Run& run) {
+  register_gdal();
+  PointReadOptions o = options;
+  if (!o.crs.empty()) o.crs = crs_from_text(o.crs);
+  if (!o.to_crs.empty()) o.to_crs = crs_from_text(o.to_crs);
+
+  PointSource source;
+  Bridge bridge(path, o.to_crs);
+  const auto parts = [&](Points& points) {
+    if (points.size() == 0) return;
+    if (!bridge.opened()) bridge.open(source);
+    bridge.cross(points);
+    source.points += points.size();
+    sink(points);
+  };
+  if (extension(path) == ".laz")
+    throw IoError(path, "is compressed LAS; uncompress it first (laszip -i in.laz -o out.las)");
+  if (is_text_name(path))
+    read_text_points(path, o, source, parts, run);
+  else if (has_las_signature(path))
+    read_las_points(path, o, source, parts, run);
+  else
+    read_vector_points(path, o, source, parts, run);
+  if (source.points == 0)
+    throw IoError(
+        path, source.without_z > 0
+                  ? fmt::format("no point has an elevation ({} rows)", source.without_z)
+              : source.other_class > 0
+                  ? fmt::format("none of its {} points is of a class asked for", source.other_class)
+                  : std::string("holds no points"));
+  return source;
+}
+
+}  // namespace dem

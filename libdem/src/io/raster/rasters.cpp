@@ -1,0 +1,93 @@
+#include "dem/io/rasters.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "dem/io/geodesy.h"
+#include "dem/io/raster_stream.h"
+#include "io/raster/gdal_raster.h"
+#include "io/raster/heightmap.h"
+#include "io/raster/hgt.h"
+#include "io/raster/tile_folder.h"
+#include "io/staged_file.h"
+
+namespace dem {
+namespace {
+
+/// An empty file is told as such before any format guesses at it.
+void check_not_empty(const std::string& path) {
+  namespace fs = std::filesystem;
+  if (path.starts_with("/vsi")) return;
+  std::error_code error;
+  if (fs::is_regular_file(path, error) && fs::file_size(path, error) == 0)
+    throw IoError(path, "is empty (0 bytes)");
+}
+
+/// What a RasterWriter can write and GDAL cannot by itself.
+void write_by_parts(const std::string& path, const Dem& dem, const Source& source,
+                    const WriteOptions& options, const Run& run) {
+  constexpr int rows_at_once = 256;
+  const auto [cols, rows] = dem.size();
+  RasterWriter writer(path, dem.size(), dem.ref, source, options, run);
+  for (int row = 0; row < rows; row += rows_at_once) {
+    run.report(double(row) / rows, "writing");
+    const Box box{0, row, cols, std::min(rows_at_once, rows - row)};
+    Raster<double> exact;
+    if (source.exact.size() == dem.size()) exact = crop(source.exact, box);
+    writer.write(crop(dem, box, dem.spacing), exact);
+  }
+  writer.commit();
+}
+
+}  // namespace
+
+DemFile read_dem(const std::string& path, const ReadOptions& options, const Run& run) {
+  const bool grey = options.heights || options.unknown_grey;
+  const bool hgt = is_hgt_name(path);
+  if (hgt && grey)
+    throw IoError(path, "is an .hgt, whose heights are metres; it takes no grey levels");
+  if (!hgt && !options.tile.empty())
+    throw IoError(path, fmt::format("is no .hgt; --tile {} has no meaning for it", options.tile));
+  check_not_empty(path);
+
+  DemFile file = hgt                           ? read_hgt(path, options, run)
+                 : grey || is_image_name(path) ? read_heightmap(path, options, run)
+                                               : read_gdal(path, options, run);
+  try {
+    file.dem.spacing = middle_spacing(file.dem.ref, file.dem.size());
+  } catch (const std::invalid_argument& error) {
+    throw IoError(path, error.what());
+  }
+  return file;
+}
+
+void write_dem(const std::string& path, const Dem& dem, const Source& source,
+               const WriteOptions& options, const Run& run) {
+  check_shape(dem);
+  const bool image =
+      options.format == "image" ||
+      (options.format.empty() && (is_image_name(path) || options.heights || options.unknown_grey));
+  if (image) return write_heightmap(path, dem, source, options, run);
+  if (options.heights || options.unknown_grey)
+    throw IoError(path, "a range of heights and a grey for unknown cells are for images only");
+  const bool hgt = options.format == "HGT" || (options.format.empty() && is_hgt_name(path));
+  const std::string format = options.format.empty() ? gdal_format_of(path) : options.format;
+  if (hgt || format == "VRT" || is_tile_folder(path))
+    return write_by_parts(path, dem, source, options, run);
+  if (format.empty())
+    throw IoError(path, "its extension names no format that can be written; give --format");
+  write_gdal(path, format, dem, source, options, run);
+}
+
+void check_writable(const std::string& path, bool overwrite) {
+  if (is_tile_folder(path)) {
+    TileFolder folder(path, overwrite);
+    return;
+  }
+  StagedFile file(path, overwrite);
+  if (extension(path) == ".vrt") TileFolder folder(tile_folder_of(path), overwrite);
+}
+
+}  // namespace dem
