@@ -67,7 +67,7 @@ class Render(CliTest):
                 (("--palette", "rainbow"), ["palette = rainbow", "one of atlas, alpine"]),
                 (("--azimuth", "north"), ["azimuth = north", "a number in [-360, 360]"]),
                 (("--altitude", "91"), ["altitude = 91", "[0, 90]"]),
-                (("--tilt", "20"), ["tilt", "style relief has no such setting"]),
+                (("--tilt", "20"), ["tilt", "is not for style relief"]),
                 (("--size", "64x48"), ["size is for --style view"]),
                 (("--camera", "1,2,3"), ["camera is for --style view"]),
                 (("--style", "cubist"), ["cubist"]),

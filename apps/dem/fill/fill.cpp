@@ -1,6 +1,5 @@
 // dem fill: fill the holes of a DEM.
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <optional>
@@ -15,11 +14,6 @@
 
 namespace dem::app {
 namespace {
-
-const std::vector<std::pair<std::string, CellType>> kTypes{
-    {"int8", CellType::int8},       {"uint8", CellType::uint8},    {"int16", CellType::int16},
-    {"uint16", CellType::uint16},   {"int32", CellType::int32},    {"uint32", CellType::uint32},
-    {"float32", CellType::float32}, {"float64", CellType::float64}};
 
 struct Options {
   std::string in, out, sigma;
@@ -82,8 +76,7 @@ std::string known_cells(const Options& o, const FillOutcome& out, CellType type)
   if (!out.known_kept) return "CHANGED";
   const std::string sum = fmt::format(" (checksum {:016x})", out.known_checksum);
   if (!o.write.type || *o.write.type == type) return "unchanged" + sum;
-  return "written as " +
-         std::ranges::find(kTypes, *o.write.type, &decltype(kTypes)::value_type::second)->first;
+  return "written as " + cell_type_names()[std::size_t(*o.write.type)];
 }
 
 void report(const Options& o, const ChosenMethod& chosen, const FillOutcome& out, CellType type,
@@ -321,121 +314,75 @@ int fill(const Options& o, Shell& shell) {
   return exit_code(out);
 }
 
-std::vector<std::string> type_names() {
-  std::vector<std::string> names;
-  for (const auto& [name, type] : kTypes) names.push_back(name);
-  return names;
-}
-
 std::string method_names() {
   std::vector<std::string> names;
   for (const auto& m : all_fill_methods()) names.push_back(m.name);
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-void add_write_options(CLI::App& app, WriteOptions& write) {
-  const char* group = "Writing";
-  app.add_option("--format", write.format, "GDAL driver name, HGT or image; else by extension")
-      ->type_name("NAME")
-      ->group(group);
-  app.add_option_function<std::string>(
-         "--type",
-         [&write](const std::string& name) {
-           for (const auto& [text, type] : kTypes)
-             if (text == name) write.type = type;
-         },
-         "int8 uint8 int16 uint16 int32 uint32 float32 float64; else as IN")
-      ->check(suggests(type_names()))
-      ->check([](const std::string& name) {
-        for (const auto& [text, type] : kTypes)
-          if (text == name) return std::string();
-        return name +
-               " is no cell type; must be int8, uint8, int16, uint16, int32, uint32, float32 or "
-               "float64";
-      })
-      ->type_name("TYPE")
-      ->group(group);
-  app.add_option_function<double>(
-         "--out-nodata", [&write](double v) { write.nodata = v; },
-         "the no-data value that OUT declares; else as IN")
-      ->check(takes("number"))
-      ->type_name("VALUE")
-      ->group(group);
-}
-
 }  // namespace
 
-void add_fill(CLI::App& app, Shell& shell) {
+void add_fill(Program& program, Shell& shell) {
   const auto o = std::make_shared<Options>();
-  auto* verb = add_verb(
-      app, shell, "fill", "Fill the holes of a DEM; known cells stay as they are, bit for bit",
+  Command& verb = program.add(
+      "fill", kEveryday, "Fill the voids of a DEM; known cells stay unchanged, bit for bit",
       "  dem fill N36E008.hgt filled.hgt\n"
-      "  dem fill sparse.tif filled.tif --sigma sigma.tif           # and how sure each cell is\n"
+      "  dem fill sparse.tif filled.tif --sigma sigma.tif           # with standard errors\n"
       "  dem fill tiles/ filled/ --memory 2G                        # a folder of .hgt tiles\n"
-      "  dem fill sparse.tif filled.tif --report filled.html        # a page to look at\n"
-      "Methods: " +
-          method_names() + " (their settings: dem methods NAME)\n" + HoleChoice::condition_help(),
-      [o, &shell] { return fill(*o, shell); });
-  verb->add_option("IN", o->in, "a DEM with holes, anything GDAL opens; or a folder of tiles")
-      ->required()
-      ->check(takes("raster"))
-      ->type_name("");
-  verb->add_option("OUT", o->out,
-                   "by extension; NAME.vrt: tiles of GeoTIFF; FOLDER/: tiles of .hgt")
-      ->required()
-      ->check(takes("new raster"))
-      ->type_name("");
-  verb->add_option("-m,--method", o->method, "how to fill, NAME or NAME:PRESET")
-      ->check(suggests(names_and_presets(all_fill_methods())))
-      ->type_name("NAME")
-      ->capture_default_str();
-  verb->add_option("-s,--set", o->set, "a setting of the method; may be repeated")
-      ->allow_extra_args(false)
-      ->type_name("KEY=VALUE");
-  verb->add_option("--sigma", o->sigma, "also write the standard deviation of each cell, in metres")
-      ->check(takes("new raster"))
-      ->type_name("FILE");
-  verb->add_option("--roughness", o->roughness,
-                   "gaps as rough as the terrain around (auto), or VALUE times that")
-      ->type_name("auto|VALUE");
-  verb->add_option("--realisation", o->realisation,
-                   "the K-th random surface through the data, as rough as the terrain")
-      ->check(takes("number"))
-      ->check(CLI::Range(1, 1000000).description(""))
-      ->type_name("K");
-  verb->add_option("--seed", o->seed, "of random numbers")->type_name("N");
-  verb->add_option("--source", o->origin,
-                   "also write where each cell comes from: measured, method, aux, water")
-      ->check(takes("new raster"))
-      ->type_name("FILE");
-  verb->add_option("--report-holes", o->table,
-                   "also write a JSON table of holes, with errors of hidden rim cells")
-      ->check(takes("new file"))
-      ->type_name("FILE");
-  add_report_option(*verb, o->report);
-  verb->add_option("--aux", o->aux,
-                   "a DEM to fill over; each hole takes the best of several, or none")
-      ->check(takes("raster"))
-      ->allow_extra_args(false)
-      ->type_name("DEM");
-  verb->add_option("--water", o->water, "polygons of lakes: flat where unknown, their shores above")
-      ->check(takes("vector"))
-      ->type_name("FILE");
-  verb->add_flag("--whole", o->whole,
-                 "as one problem, not hole by hole; so by itself above 25 % unknown");
-  verb->add_option("--memory", o->memory,
-                   "part by part within so much memory: 2G, 500M (GeoTIFF, VRT ...)")
-      ->type_name("SIZE");
-  verb->add_flag("--resume", o->resume,
-                 "keep a journal; the same command goes on where it was stopped");
-  verb->add_option_function<std::string>(
-          "--task",
-          [o](const std::string& text) { std::tie(o->task, o->tasks) = parse_task(text); },
-          "the I-th of N shares, into a journal; after all, --resume writes OUT")
-      ->type_name("I/N");
-  o->choice.add_options(*verb);
-  add_read_options(*verb, o->read);
-  add_write_options(*verb, o->write);
+      "  dem fill sparse.tif filled.tif --report filled.html        # a page with pictures");
+  verb.notes = "Methods: " + method_names() + " (their settings: dem methods NAME)\n" +
+               HoleChoice::condition_help();
+  verb.work = [o, &shell] { return fill(*o, shell); };
+  verb.argument("IN", o->in, "DEM with voids, in any format that GDAL opens, or a folder of tiles")
+      .kind("raster")
+      .must_be_given();
+  verb.argument("OUT", o->out,
+                "Filled DEM, in the format of its extension; NAME.vrt for tiles of GeoTIFF, "
+                "FOLDER/ for tiles of .hgt")
+      .kind("new raster")
+      .must_be_given();
+  verb.option("-m,--method", o->method, "NAME", "Fill method, NAME or NAME:PRESET")
+      .suggest(names_and_presets(all_fill_methods()))
+      .show_default();
+  add_set_option(verb, o->set, "method");
+  verb.option("--sigma", o->sigma, "FILE", "Also write the standard error of each cell in metres")
+      .kind("new raster");
+  verb.option(
+      "--roughness", o->roughness, "auto|VALUE",
+      "Make filled cells as rough as the terrain around them (auto), or VALUE times as rough");
+  verb.option("--realisation", o->realisation, "K",
+              "Make the K-th of many random surfaces that pass through the known cells and are as "
+              "rough as the terrain")
+      .within(1, 1000000);
+  verb.option("--seed", o->seed, "N", "Random seed for --roughness and --realisation");
+  verb.option("--source", o->origin, "FILE",
+              "Also write where each height comes from: measured, method, auxiliary DEM or water")
+      .kind("new raster");
+  verb.option(
+          "--report-holes", o->table, "FILE",
+          "Also write a JSON table of the holes, with the errors of hidden cells on their edges")
+      .kind("new file");
+  add_report_option(verb, o->report);
+  verb.option("--aux", o->aux, "DEM",
+              "Auxiliary DEM that gives the shape of filled cells; may be repeated, and each hole "
+              "takes the one that fits best, or none")
+      .kind("raster");
+  verb.option("--water", o->water, "FILE",
+              "Polygons of lakes, which are filled flat and below their shores")
+      .kind("vector");
+  verb.flag("--whole", o->whole,
+            "Fill the whole raster at once instead of hole by hole (automatic when more than 25 % "
+            "of the cells are nodata)");
+  verb.option("--memory", o->memory, "SIZE",
+              "Work part by part within this amount of memory, for example 2G or 500M");
+  verb.flag("--resume", o->resume,
+            "Keep a journal, from which the same command goes on after it was stopped");
+  verb.option_read_by(
+      "--task", [o](const std::string& text) { std::tie(o->task, o->tasks) = parse_task(text); },
+      "I/N", "Fill the I-th of N shares of the holes; after all of them --resume writes OUT");
+  o->choice.add_options(verb);
+  add_read_options(verb, o->read);
+  add_write_options(verb, o->write);
 }
 
 }  // namespace dem::app

@@ -1,6 +1,5 @@
 #include "fill/hole_choice.h"
 
-#include <CLI/CLI.hpp>
 #include <array>
 
 namespace dem::app {
@@ -8,44 +7,27 @@ namespace {
 
 constexpr std::size_t verdicts = 8;
 
-CLI::Validator above_zero() {
-  return CLI::Validator(
-      [](const std::string& text) {
-        double value = 0;
-        return CLI::detail::lexical_cast(text, value) && value > 0
-                   ? std::string()
-                   : text + "; must be a number above 0";
-      },
-      "");
-}
-
 }  // namespace
 
-void HoleChoice::add_options(CLI::App& app) {
-  const char* group = "Which holes (all by default)";
-  app.add_flag("--inner-only", inner_only, "not those that touch the border of the raster")
-      ->group(group);
-  app.add_option("--max-area-km2", max_area_km2, "only those up to this area on the ground")
-      ->check(above_zero())
-      ->check(takes("number"))
-      ->type_name("A")
-      ->group(group);
-  app.add_option("--max-distance-m", max_distance_m,
-                 "only those with no cell further from data than this")
-      ->check(above_zero())
-      ->check(takes("number"))
-      ->type_name("D")
-      ->group(group);
-  app.add_option("--min-cells", min_cells, "only those of at least so many cells")
-      ->type_name("N")
-      ->group(group);
-  app.add_option("--where", where, "only those that meet a condition, see below")
-      ->type_name("CONDITION")
-      ->group(group);
-  app.add_option("--region", region, "only those with a cell in these polygons, anything OGR opens")
-      ->check(takes("vector"))
-      ->type_name("FILE")
-      ->group(group);
+void HoleChoice::add_options(Command& command) {
+  command.heading("Which holes (all by default)");
+  command.flag("--inner-only", inner_only, "Leave holes that touch the border of the raster");
+  command
+      .option("--max-area-km2", max_area_km2, "A", "Fill only holes up to this area on the ground")
+      .above(0);
+  command
+      .option("--max-distance-m", max_distance_m, "D",
+              "Fill only holes where no cell is further than this from the nearest known cell")
+      .above(0);
+  command.option("--min-cells", min_cells, "N",
+                 "Fill only holes with at least this number of cells");
+  command.option("--where", where, "CONDITION",
+                 "Fill only holes that meet a condition (see below)");
+  command
+      .option("--region", region, "FILE",
+              "Fill only holes with a cell in these polygons, in any format that OGR opens")
+      .kind("vector");
+  command.heading("Options");
 }
 
 std::string HoleChoice::condition_help() {
@@ -56,7 +38,7 @@ std::string HoleChoice::condition_help() {
     text += " " + fact.name;
     width += fact.name.size() + 1;
   }
-  return text;
+  return text + "\n";
 }
 
 std::string HoleChoice::text() const {

@@ -17,7 +17,7 @@ struct HoleChoice {
   std::optional<std::size_t> min_cells;
   std::string where, region;
 
-  void add_options(CLI::App& app);
+  void add_options(Command& command);
 
   /// How conditions are written, for the help.
   static std::string condition_help();
