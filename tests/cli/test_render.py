@@ -71,7 +71,7 @@ class Render(CliTest):
                 (("--size", "64x48"), ["size is for --style view"]),
                 (("--camera", "1,2,3"), ["camera is for --style view"]),
                 (("--style", "cubist"), ["cubist"]),
-                (("--style", "view", "--multidirectional"), ["multidirectional", "style view has no such setting"]),
+                (("--style", "view", "--multidirectional"), ["multidirectional", "is not for style view"]),
                 (("--style", "view", "--size", "big"), ["size = big", "1600x900"]),
                 (("--style", "view", "--size", "0x9"), ["width = 0", "[16, 16384]"]),
                 (("--style", "view", "--samples", "0"), ["samples = 0"]),

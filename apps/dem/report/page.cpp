@@ -52,7 +52,7 @@ void check_report(const std::string& path, bool overwrite) {
   const std::string extension = std::filesystem::path(path).extension().string();
   check_writable(path, overwrite);
   if (extension != ".html" && extension != ".htm")
-    refuse("--report", path, "the name of a file in .html");
+    refuse("--report", path, "a file name in .html");
 }
 
 void Stopwatch::lap(std::string step) {
