@@ -9,6 +9,7 @@
 #include <regex>
 #include <stdexcept>
 
+#include "dem/io/geodesy.h"
 #include "dem/outliers.h"
 
 namespace dem::app {
@@ -26,6 +27,19 @@ HeightRange parse_height_range(const std::string& text) {
   }
   if (!(range.low_m < range.high_m)) refuse("--height-range", text, must_be);
   return range;
+}
+
+/// KEY=VALUE.
+std::pair<std::string, std::string> parse_pair_of(std::string_view option, const std::string& text,
+                                                  std::string_view must_be) {
+  const auto equals = text.find('=');
+  if (equals == std::string::npos || equals == 0) refuse(option, text, must_be);
+  return {text.substr(0, equals), text.substr(equals + 1)};
+}
+
+std::string upper(std::string text) {
+  std::ranges::transform(text, text.begin(), [](unsigned char c) { return char(std::toupper(c)); });
+  return text;
 }
 
 /// The name of a tile, as it stands in the names of .hgt files.
@@ -118,6 +132,25 @@ void add_write_options(Command& command, WriteOptions& options) {
       .one_of(cell_type_names());
   command.option("--out-nodata", options.nodata, "VALUE",
                  "Nodata value that the output declares (that of IN, or a usual one)");
+  const auto add = [&options](const std::string& key, const std::string& value) {
+    options.creation_options.emplace_back(key, value);
+  };
+  command
+      .option_read_by(
+          "--compress", [add](const std::string& name) { add("COMPRESS", upper(name)); }, "NAME",
+          "Compression of GeoTIFF and COG")
+      .one_of({"deflate", "lzw", "zstd", "none"})
+      .show_default("deflate");
+  command
+      .option_read_by(
+          "--co",
+          [add](const std::string& text) {
+            const auto [key, value] =
+                parse_pair_of("--co", text, "KEY=VALUE, for example ZLEVEL=9");
+            add(key, value);
+          },
+          "KEY=VALUE", "Creation option of the GDAL driver; may be repeated")
+      .repeats = true;
   command.heading("Options");
 }
 
@@ -127,10 +160,26 @@ void add_set_option(Command& command, std::vector<std::string>& set, const std::
 }
 
 std::pair<std::string, std::string> parse_setting(const std::string& text) {
-  const auto equals = text.find('=');
-  if (equals == std::string::npos || equals == 0)
-    refuse("--set", text, "KEY=VALUE, for example I=0.4");
-  return {text.substr(0, equals), text.substr(equals + 1)};
+  return parse_pair_of("--set", text, "KEY=VALUE, for example I=0.4");
+}
+
+std::string parse_crs(const std::string& option, const std::string& text) {
+  try {
+    crs_wkt(text);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(option + std::string(error.what()).substr(3));  // after "crs"
+  }
+  const bool number = text.find_first_not_of("0123456789") == text.npos;
+  return number && !text.empty() ? "EPSG:" + text : text;
+}
+
+void add_crs_option(Command& command, const std::string& option, std::string& crs,
+                    const std::string& doc) {
+  command
+      .option_read_by(
+          option, [option, &crs](const std::string& text) { crs = parse_crs(option, text); }, "CRS",
+          doc)
+      .kind("crs");
 }
 
 double parse_number(std::string_view option, const std::string& text, std::string_view must_be) {
@@ -141,14 +190,18 @@ double parse_number(std::string_view option, const std::string& text, std::strin
   return value;
 }
 
-double parse_share(std::string_view option, const std::string& text) {
+double parse_percent(std::string_view option, const std::string& text) {
   const auto must_be = "a percentage such as 3.4%, or a part such as 0.034 (above 0, up to 1)";
   const bool percent = text.ends_with('%');
   std::string number = text.substr(0, text.size() - percent);
-  while (number.ends_with(' ')) number.pop_back();
-  const double share = parse_number(option, number, must_be) / (percent ? 100 : 1);
-  if (share <= 0 || share > 1) refuse(option, text, must_be);
-  return share;
+  while (percent && number.ends_with(' ')) number.pop_back();
+  const double value = parse_number(option, number, must_be) * (percent ? 1 : 100);
+  if (value <= 0 || value > 100) refuse(option, text, must_be);
+  return value;
+}
+
+double parse_share(std::string_view option, const std::string& text) {
+  return parse_percent(option, text) / 100;
 }
 
 std::string grouped(std::size_t n) {

@@ -57,7 +57,7 @@ class Shell {
 /// Options of verbs that read a DEM: --band, --tile, --nodata, --no-detect, --height-range ...
 void add_read_options(Command& command, ReadOptions& options);
 
-/// Options of verbs that write a raster: --format, --type, --out-nodata.
+/// Options of verbs that write a raster: --format, --type, --out-nodata, --compress, --co.
 void add_write_options(Command& command, WriteOptions& options);
 
 /// Of CellType 0, 1, ...: "int8", "uint8", ...
@@ -83,6 +83,17 @@ std::pair<std::string, std::string> parse_setting(const std::string& text);
 /// A part of a whole, in (0, 1]: "3.4%", "3.4 %" and "0.034" are one. Throws std::invalid_argument
 /// that names the option.
 double parse_share(std::string_view option, const std::string& text);
+
+/// The same in percent, in (0, 100].
+double parse_percent(std::string_view option, const std::string& text);
+
+/// "EPSG:32611", "32611", WKT or PROJ's words, as the library takes them. Throws
+/// std::invalid_argument that names the option.
+std::string parse_crs(const std::string& option, const std::string& text);
+
+/// An option that takes a coordinate system.
+void add_crs_option(Command& command, const std::string& option, std::string& crs,
+                    const std::string& doc);
 
 /// Throws std::invalid_argument `option = text; must be ...`.
 double parse_number(std::string_view option, const std::string& text, std::string_view must_be);

@@ -11,11 +11,14 @@ struct Options {
   std::string in, out;
   DeterraceOptions deterrace;
   ReadOptions read;
+  WriteOptions write;
 };
 
 int run_deterrace(const Options& o, Shell& shell) {
   check_options(o.deterrace);
-  check_writable(o.out, shell.overwrite);
+  WriteOptions write = o.write;
+  write.overwrite = shell.overwrite;
+  check_writable(o.out, write);
   const Run run = shell.run();
   DemFile file = read_dem(o.in, o.read, run.part(0, 0.1));
   Deterraced smooth = deterrace(file.dem, o.deterrace, run.part(0.1, 0.9));
@@ -24,9 +27,7 @@ int run_deterrace(const Options& o, Shell& shell) {
   Source source = file.source;
   source.exact = {};
   source.type = CellType::float32;
-  WriteOptions write;
-  write.overwrite = shell.overwrite;
-  if (holds_metadata(o.out, ""))
+  if (holds_metadata(o.out, o.write.format))
     write.metadata = {{"DEM_DETERRACE", fmt::format("bound {} m", o.deterrace.bound_m)}};
   write_dem(o.out, file.dem, source, write, run.part(0.9, 1));
   shell.say("cells moved by {:.3g} m (RMS), {:.3g} m at most: {}", smooth.moved_rms_m,
@@ -58,6 +59,7 @@ void add_deterrace(Program& program, Shell& shell) {
               "Number of relaxation passes on each grid of the pyramid")
       .show_default();
   add_read_options(verb, o->read);
+  add_write_options(verb, o->write);
 }
 
 }  // namespace dem::app

@@ -16,6 +16,7 @@ struct Options {
   int every = 100;
   std::vector<std::string> set;
   ReadOptions read;
+  WriteOptions write;
 };
 
 ErosionOptions parse_settings(const std::vector<std::string>& set) {
@@ -29,10 +30,9 @@ ErosionOptions parse_settings(const std::vector<std::string>& set) {
 std::string frame_name(int step) { return fmt::format("step_{:06}.tif", step); }
 
 /// Heights in whole metres would lose most of what a step does, so OUT holds fractions if it can.
-WriteOptions writing(const std::string& path, const Shell& shell) {
-  WriteOptions write;
+WriteOptions writing(const std::string& path, const Shell& shell, WriteOptions write = {}) {
   write.overwrite = shell.overwrite;
-  if (holds_metadata(path, "")) write.type = CellType::float32;
+  if (!write.type && holds_metadata(path, write.format)) write.type = CellType::float32;
   return write;
 }
 
@@ -59,8 +59,8 @@ void report(const Options& o, const ErosionOptions& options, const Eroded& erode
 
 int run_erode(const Options& o, Shell& shell) {
   const ErosionOptions options = parse_settings(o.set);
-  check_writable(o.out, shell.overwrite);
-  if (!o.water.empty()) check_writable(o.water, shell.overwrite);
+  check_writable(o.out, writing(o.out, shell, o.write));
+  if (!o.water.empty()) check_writable(o.water, writing(o.water, shell));
   std::optional<OutputFolder> folder;
   if (!o.frames.empty()) {
     folder.emplace(o.frames);
@@ -95,8 +95,8 @@ int run_erode(const Options& o, Shell& shell) {
     write_dem(o.water, {eroded.water_m, file.dem.known, file.dem.ref, file.dem.spacing}, described,
               writing(o.water, shell));
   }
-  WriteOptions write = writing(o.out, shell);
-  if (holds_metadata(o.out, ""))
+  WriteOptions write = writing(o.out, shell, o.write);
+  if (holds_metadata(o.out, o.write.format))
     write.metadata = {{"DEM_EROSION", settings_text(o.set)}, {"DEM_VERSION", DEM_VERSION}};
   write_dem(o.out, {eroded.z, file.dem.known, file.dem.ref, file.dem.spacing}, source, write,
             run.part(0.9, 1));
@@ -141,6 +141,7 @@ void add_erode(Program& program, Shell& shell) {
       .within(1, 1000000)
       .show_default();
   add_read_options(verb, o->read);
+  add_write_options(verb, o->write);
 }
 
 }  // namespace dem::app

@@ -7,6 +7,8 @@
 
 #include "dem/generators.h"
 #include "dem/io/drawing.h"
+#include "dem/io/geodesy.h"
+#include "dem/io/lattices.h"
 #include "places.h"
 #include "verbs.h"
 
@@ -16,7 +18,8 @@ namespace {
 struct Options {
   std::string name;
   std::vector<std::string> files;  // [IMAGE] OUT
-  std::string size, cell, crs, origin, format;
+  std::string size, cell, crs, origin;
+  WriteOptions write;
   std::optional<std::uint64_t> seed;
   std::vector<std::string> set;
   int median = 0;
@@ -39,11 +42,18 @@ Size parse_size(const std::string& text) {
   return {int(cols), int(rows)};
 }
 
-Spacing parse_cell(const std::string& text) {
-  const auto must_be = "METRES or DXxDY, above 0, e.g. 30";
-  const auto [dx, dy] = parse_pair("--cell", text, 'x', must_be);
-  if (!(dx > 0) || !(dy > 0)) refuse("--cell", text, must_be);
-  return {dx, dy};
+/// "SIZE" or "DXxDY", along x and y.
+std::pair<CellSize, CellSize> parse_cell(const std::string& text) {
+  const auto size_of = [&](const std::string& part) {
+    try {
+      return parse_cell_size(part);
+    } catch (const std::invalid_argument&) {
+      refuse("--cell", text, "SIZE or DXxDY above 0: 30 or 30m, 1s (arc second), 0.001deg");
+    }
+  };
+  const auto x = text.find('x');
+  const CellSize first = size_of(text.substr(0, x));
+  return {first, x == text.npos ? first : size_of(text.substr(x + 1))};
 }
 
 /// The whole Earth, which leaves nothing to choose but the size.
@@ -64,7 +74,17 @@ Canvas plane(const Options& o, Size size) {
     refuse("--origin", o.origin, must_be);
   const auto [x, y] =
       o.origin.empty() ? std::pair{0.0, 0.0} : parse_pair("--origin", o.origin, ',', must_be);
-  return plane_canvas(size, parse_cell(o.cell.empty() ? "30" : o.cell), x, y, o.crs);
+  const std::string cell = o.cell.empty() ? "30" : o.cell;
+  const auto [dx, dy] = parse_cell(cell);
+  if (dx.unit == CellUnit::metres && dy.unit == CellUnit::metres)
+    return plane_canvas(size, {dx.value, dy.value}, x, y, o.crs);
+  Canvas canvas = plane_canvas(size, {1, 1}, x, y, o.crs);
+  if (dx.unit != dy.unit || !is_geographic(canvas.ref))
+    refuse("--cell", cell, "in metres, or both in degrees with a --crs in degrees");
+  canvas.ref.to_world[1] = dx.value;
+  canvas.ref.to_world[5] = -dy.value;
+  canvas.spacing = middle_spacing(canvas.ref, {1, 1});
+  return canvas;
 }
 
 /// Grey levels of the image that the generator starts from; none when it takes none.
@@ -120,7 +140,11 @@ std::string settings_text(const Settings& settings) {
 int generate(const Options& o, Shell& shell) {
   const ChosenGenerator chosen = choose(o);
   const std::string& out = o.files.back();
-  check_writable(out, shell.overwrite);
+  WriteOptions write = o.write;
+  write.overwrite = shell.overwrite;
+  check_writable(out, write);
+  if (!o.size.empty()) parse_size(o.size);
+  if (!chosen.generator->globe) check_canvas(plane(o, {1, 1}));
   const Run run = shell.run();
   Drawing drawing{read_image(o, *chosen.generator, run.part(0, 0.1))};
   const Size size = canvas_size(o, *chosen.generator, drawing.grey);
@@ -135,10 +159,7 @@ int generate(const Options& o, Shell& shell) {
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
-  WriteOptions write;
-  write.overwrite = shell.overwrite;
-  write.format = o.format;
-  if (holds_metadata(out, o.format))
+  if (holds_metadata(out, write.format))
     write.metadata = {{"DEM_GENERATOR", o.name},
                       {"DEM_SETTINGS", settings_text(chosen.settings)},
                       {"DEM_VERSION", DEM_VERSION}};
@@ -191,8 +212,10 @@ void add_generate(Program& program, Shell& shell) {
       .must_be_given();
   verb.option("--size", o->size, "N|WxH",
               "Number of columns and rows (1025, or the size of the image)");
-  verb.option("--cell", o->cell, "M|DXxDY", "Cell size in metres").show_default("30");
-  verb.option("--crs", o->crs, "NAME", "Coordinate system, for example EPSG:32619").kind("crs");
+  verb.option("--cell", o->cell, "SIZE|DXxDY",
+              "Cell size: 30 or 30m; with degrees also 1s (arc second), 0.001deg")
+      .show_default("30");
+  add_crs_option(verb, "--crs", o->crs, "Coordinate system, for example EPSG:32619");
   verb.option("--origin", o->origin, "X,Y", "Centre of the north-west cell in the units of the CRS")
       .show_default("0,0");
   verb.option("--seed", o->seed, "N",
@@ -202,8 +225,7 @@ void add_generate(Program& program, Shell& shell) {
               "Number of passes of a 5 x 5 median filter over the result")
       .within(0, 100)
       .show_default();
-  verb.option("--format", o->format, "NAME",
-              "GDAL driver name, HGT or image (chosen by the extension of OUT)");
+  add_write_options(verb, o->write);
 }
 
 }  // namespace dem::app

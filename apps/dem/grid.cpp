@@ -29,6 +29,7 @@ struct Options {
   PointReadOptions read;
   BinOptions bin;
   GriddingOptions gridding;
+  WriteOptions write;
 };
 
 void check_honours_breaklines(const FillMethod& method) {
@@ -298,7 +299,9 @@ void write_outputs(const Options& o, const Dem& dem, const Raster<float>& sigma,
     described.band_description = "standard deviation of the elevation in metres";
     write_dem(o.sigma, of_sigma, described, write, run.part(0, 0.4));
   }
-  if (holds_metadata(o.out, ""))
+  write = o.write;
+  write.overwrite = shell.overwrite;
+  if (holds_metadata(o.out, write.format))
     write.metadata = {{"DEM_METHOD", o.no_fill ? "points only" : o.method},
                       {"DEM_VERSION", DEM_VERSION}};
   write_dem(o.out, dem, source, write, run.part(0.4, 1));
@@ -342,7 +345,9 @@ int grid(Options& o, Shell& shell) {
   o.bin.plane = !o.snap;
   if (o.method.empty()) o.method = o.contours ? "contours" : std::string(default_fill_method());
   const ChosenMethod method = choose(o);
-  check_writable(o.out, shell.overwrite);
+  WriteOptions write = o.write;
+  write.overwrite = shell.overwrite;
+  check_writable(o.out, write);
   if (!o.sigma.empty()) check_writable(o.sigma, shell.overwrite);
 
   const Run run = shell.run();
@@ -403,20 +408,19 @@ void add_point_options(Command& verb, Options& o) {
       .by_commas()
       .within(0, 255);
   verb.option("--nodata", o.read.nodata, "VALUE", "Elevation that means nodata");
-  verb.option("--crs", o.read.crs, "CRS",
-              "Coordinate system of the points, for example EPSG:25832; PROJ strings and WKT too")
-      .kind("crs");
+  add_crs_option(
+      verb, "--crs", o.read.crs,
+      "Coordinate system of the points, for example EPSG:25832; PROJ strings and WKT too");
 }
 
 void add_lattice_options(Command& verb, Options& o) {
   verb.heading("Lattice (chosen by the density of the points)");
   verb.option("--like", o.like, "RASTER", "Use the lattice of this raster").kind("raster");
   verb.option("--bounds", o.bounds, "W,S,E,N", "Outer edges of the cells");
-  verb.option("--cell", o.cell, "SIZE", "Cell size with its unit: 30m, 1s (arc second), 0.001deg");
+  verb.option("--cell", o.cell, "SIZE", "Cell size: 30 or 30m, 1s (arc second), 0.001deg");
   verb.flag("--nodes", o.nodes, "--bounds are the centres of the outer cells");
-  verb.option("--to-crs", o.read.to_crs, "CRS",
-              "Coordinate system of the lattice (that of the points)")
-      .kind("crs");
+  add_crs_option(verb, "--to-crs", o.read.to_crs,
+                 "Coordinate system of the lattice (that of the points)");
 }
 
 }  // namespace
@@ -471,6 +475,7 @@ void add_grid(Program& program, Shell& shell) {
       .kind("new raster");
   add_lattice_options(verb, *o);
   add_point_options(verb, *o);
+  add_write_options(verb, o->write);
 }
 
 }  // namespace dem::app

@@ -21,19 +21,32 @@ Canvas plane_canvas(Size size, Spacing spacing, double x, double y, const std::s
   return canvas;
 }
 
-Vec3 place_in(const Dem& dem, const std::string& option, const std::string& text) {
+namespace {
+
+struct Place {
+  double x, y, z;
+  bool above_ground;
+};
+
+Place parse_place(const std::string& option, const std::string& text) {
   const auto must_be =
       "X,Y,Z: the DEM's coordinates and an elevation in metres, or +METRES above ground";
   const auto first = text.find(','), second = text.find(',', first + 1);
-  if (first == std::string::npos || second == std::string::npos)
-    throw std::invalid_argument(fmt::format("{} = {}; must be {}", option, text, must_be));
-  const double x = parse_number(option, text.substr(0, first), must_be);
-  const double y = parse_number(option, text.substr(first + 1, second - first - 1), must_be);
+  if (first == std::string::npos || second == std::string::npos) refuse(option, text, must_be);
   std::string height = text.substr(second + 1);
   const bool above_ground = height.starts_with('+');
   if (above_ground) height.erase(0, 1);
-  double z = parse_number(option, height, must_be);
+  return {parse_number(option, text.substr(0, first), must_be),
+          parse_number(option, text.substr(first + 1, second - first - 1), must_be),
+          parse_number(option, height, must_be), above_ground};
+}
 
+}  // namespace
+
+void check_place(const std::string& option, const std::string& text) { parse_place(option, text); }
+
+Vec3 place_in(const Dem& dem, const std::string& option, const std::string& text) {
+  const auto [x, y, z, above_ground] = parse_place(option, text);
   const auto& w = dem.ref.to_world;
   const double area = w[1] * w[5] - w[2] * w[4];
   const double col = (w[5] * (x - w[0]) - w[2] * (y - w[3])) / area;

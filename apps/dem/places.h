@@ -16,6 +16,9 @@ Canvas globe_canvas(Size size);
 /// feet), the cell is what spans so many metres there. `crs`: "EPSG:32619", WKT, PROJ's words or "".
 Canvas plane_canvas(Size size, Spacing spacing, double x, double y, const std::string& crs);
 
+/// Throws std::invalid_argument unless the text has the form that place_in takes.
+void check_place(const std::string& option, const std::string& text);
+
 /// "X,Y,Z" in the coordinates of the DEM and metres; "+200" for Z is 200 m above the ground there.
 /// Throws std::invalid_argument that names `option`.
 Vec3 place_in(const Dem& dem, const std::string& option, const std::string& text);

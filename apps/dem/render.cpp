@@ -83,6 +83,8 @@ int render(const Options& o, Shell& shell) {
     HillshadeOptions light;
     dem::apply(chosen, fields(light));
   }
+  if (!o.camera.empty()) check_place("--camera", o.camera);
+  if (!o.target.empty()) check_place("--target", o.target);
   check_writable(o.out, shell.overwrite);
 
   const Run run = shell.run();

@@ -23,6 +23,7 @@ struct Options {
   double contours = 0;
   std::uint64_t seed = 1;
   ReadOptions read;
+  WriteOptions write;
   std::vector<const Option*> ways;  // of which one is to be given
 };
 
@@ -80,7 +81,9 @@ Sampled sample(const Options& o, const Dem& dem, const Run& run) {
 
 int run_sample(const Options& o, Shell& shell) {
   check_options(o);
-  check_writable(o.out, shell.overwrite);
+  WriteOptions write = o.write;
+  write.overwrite = shell.overwrite;
+  check_writable(o.out, write);
   const Run run = shell.run();
   const DemFile file = read_dem(o.in, o.read, run.part(0, 0.4));
   const std::size_t before = count(file.dem.known);
@@ -93,9 +96,7 @@ int run_sample(const Options& o, Shell& shell) {
   // Contour cells have new heights, so the original values are not theirs any more.
   Source source = file.source;
   if (o.contours > 0) source.exact = {};
-  WriteOptions write;
-  write.overwrite = shell.overwrite;
-  if (holds_metadata(o.out, "")) write.metadata = {{"DEM_SAMPLE", sampled.how}};
+  if (holds_metadata(o.out, o.write.format)) write.metadata = {{"DEM_SAMPLE", sampled.how}};
   write_dem(o.out, sampled.dem, source, write, run.part(0.6, 1));
 
   shell.say("kept {} of {} known cells ({}), {}: {}", grouped(after), grouped(before),
@@ -150,6 +151,7 @@ void add_sample(Program& program, Shell& shell) {
       "Keep as few cells as --method needs to miss no cell by more than this")
       .above(0);
   add_read_options(verb, o->read);
+  add_write_options(verb, o->write);
 }
 
 }  // namespace dem::app

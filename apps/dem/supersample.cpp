@@ -16,6 +16,7 @@ struct Options {
   std::uint64_t seed = 1;
   SupersampleOptions super;
   ReadOptions read;
+  WriteOptions write;
 };
 
 ChosenMethod choose(const Options& o) {
@@ -34,7 +35,9 @@ ChosenMethod choose(const Options& o) {
 
 int run_supersample(const Options& o, Shell& shell) {
   const ChosenMethod method = choose(o);
-  check_writable(o.out, shell.overwrite);
+  WriteOptions write = o.write;
+  write.overwrite = shell.overwrite;
+  check_writable(o.out, write);
   const Run run = shell.run();
   DemFile file = read_dem(o.in, o.read, run.part(0, 0.1));
   if (count(file.dem.known) == 0) throw IoError(o.in, "no known cell");
@@ -47,9 +50,7 @@ int run_supersample(const Options& o, Shell& shell) {
   source.exact = {};
   source.type = CellType::float32;
   source.nodata.reset();
-  WriteOptions write;
-  write.overwrite = shell.overwrite;
-  if (holds_metadata(o.out, ""))
+  if (holds_metadata(o.out, o.write.format))
     write.metadata = {{"DEM_METHOD", o.method}, {"DEM_VERSION", DEM_VERSION}};
   const Dem dem{fine.filled.z, Mask(lattice.size, 1), lattice.ref, lattice.spacing};
   write_dem(o.out, dem, source, write, run.part(0.9, 1));
@@ -105,6 +106,7 @@ void add_supersample(Program& program, Shell& shell) {
       .show_default();
   add_set_option(verb, o->set, "method");
   add_read_options(verb, o->read);
+  add_write_options(verb, o->write);
 }
 
 }  // namespace dem::app

@@ -144,7 +144,7 @@ class BadUsage(CliTest):
         self.fails(1, "fill", "a", says=["OUT", "dem fill --help"])
 
     def test_unexpected_argument_is_named(self):
-        self.fails(1, "fill", "a", "b", "c", says=["c", "dem fill --help"])
+        self.fails(1, "deterrace", "a", "b", "c", says=["c", "dem deterrace --help"])
 
     def test_number_that_is_none_is_refused(self):
         self.fails(1, "fill", "a", "b", "--threads", "many", says=["threads", "many"])
@@ -193,8 +193,68 @@ class BadUsage(CliTest):
         self.fails(1, "evaluate", "a", "b", "--expect", "rsme<3", says=["rsme<3", "rmse"])
 
     def test_rate_of_all_cells_is_refused(self):
-        self.fails(1, "curve", "a", "out", "--rates", "100", says=["100"])
+        self.fails(1, "curve", "a", "out", "--rates", "100%", says=["100"])
         self.assert_files()
+
+
+class OptionsFirst(CliTest):
+    """Every option is checked before a file is opened: IN is missing, and the option is what is named."""
+
+    WRITING = [("--type", "int12"), ("--format", "XYZZY"), ("--co", "NO_SUCH=1"), ("--co", "ZLEVEL"),
+               ("--compress", "rar"), ("--out-nodata", "none")]
+    READING = [("--band", "0"), ("--tile", "here"), ("--nodata", "none"), ("--height-range", "5,1"),
+               ("--unknown-grey", "2")]
+    ANY = [("--threads", "-1"), ("--progress", "dots"), ("--no-such-option", "")]
+    BAD = {
+        ("info", "IN"): [("--holes", "no/such/a.gpkg"), *READING],
+        ("fill", "IN", "out.tif"): [
+            ("--set", "I"), ("--set", "nothing=1"), ("--method", "magic"), ("--sigma", "no/such/a.tif"),
+            ("--roughness", "much"), ("--realisation", "0"), ("--seed", "-1"), ("--source", "no/such/a.tif"),
+            ("--report-holes", "no/such/a.json"), ("--report", "a.tif"), ("--memory", "much"), ("--task", "9/8"),
+            ("--max-area-km2", "0"), ("--min-cells", "-1"), ("--where", "colour < 5"), *READING, *WRITING],
+        ("grid", "IN", "out.tif"): [
+            ("--set", "I"), ("--method", "magic"), ("--combine", "sum"), ("--passes", "-1"), ("--cell", "0"),
+            ("--cell", "3ells"), ("--bounds", "1,2"), ("--crs", "EPSG:1"), ("--to-crs", "nowhere"), ("--class", "256"),
+            ("--delimiter", "ab"), ("--reject-outliers", "0"), ("--sigma", "no/such/a.tif"), *WRITING],
+        ("supersample", "IN", "out.tif", "--factor", "2"): [
+            ("--preserve", "all"), ("--method", "magic"), ("--set", "I"), ("--seed", "x"), *READING, *WRITING],
+        ("supersample", "IN", "out.tif"): [("--factor", "1")],
+        ("deterrace", "IN", "out.tif"): [("--bound", "-1"), ("--passes", "x"), *READING, *WRITING],
+        ("render", "IN", "out.png"): [("--style", "oil"), ("--palette", "pink"), ("--exaggeration", "x"), *READING],
+        ("render", "IN", "out.png", "--style", "view"): [("--size", "5"), ("--camera", "1,2"), ("--target", "1,2,x")],
+        ("check", "IN"): READING,
+        ("sample", "IN", "out.tif"): [("--keep", "3.4"), ("--voids", "0%"), ("--count", "0"), ("--every", "x"),
+                                      ("--max-error", "0")],
+        ("sample", "IN", "out.tif", "--count", "5"): [("--seed", "-1"), ("--method", "magic"), *READING, *WRITING],
+        ("evaluate", "IN", "IN"): [("--expect", "rsme<3"), ("--report", "a.tif"), *READING],
+        ("curve", "IN", "out"): [("--rates", "50"), ("--methods", "magic"), ("--budget", "x"), ("--repeats", "0"),
+                                 ("--seed", "x"), ("--report", "a.tif"), *READING],
+        ("reproduce", "mount-washington", "out", "--tile", "IN"): [("--repeats", "0")],
+        ("generate", "sketch", "IN", "out.tif"): [("--size", "0"), ("--cell", "0"), ("--cell", "1s"), ("--crs", "1"),
+                                                  ("--origin", "5"), ("--seed", "x"), ("--set", "I"), ("--median", "-1"),
+                                                  *WRITING],
+        ("erode", "IN", "out.tif"): [("--set", "steps=x"), ("--every", "0"), ("--water", "no/such/a.tif"),
+                                     *READING, *WRITING],
+    }
+
+    def test_a_bad_option_is_named_though_the_input_is_missing(self):
+        for words, bad in self.BAD.items():
+            for option, value in bad + self.ANY:
+                given = f"{option}={value}" if value else option
+                with self.subTest(verb=words[0], given=given):
+                    done = self.dem(*words, given)
+                    self.assertIn(done.returncode, (1, 2), done.stderr)
+                    self.assert_one_error_line(done.stderr)
+                    self.assertFalse(done.stderr.startswith("dem: IN:"), done.stderr)
+                    named = [option.lstrip("-"), value.split("=")[0], value.split("/a.")[0]]
+                    self.assertTrue(any(name and name in done.stderr for name in named), done.stderr)
+        self.assert_files()
+
+    def test_an_option_given_twice_is_refused(self):
+        self.fails(1, "fill", "IN", "out.tif", "--sigma", "a.tif", "--sigma", "b.tif", says=["--sigma", "more than once"])
+
+    def test_an_option_is_no_value_of_another(self):
+        self.fails(1, "fill", "IN", "out.tif", "--sigma", "--json", says=["--sigma needs a value", "--json"])
 
 
 class Interruption(CliTest):

@@ -80,6 +80,13 @@ class Sample(CliTest):
         self.succeeds("sample", "N10E010.hgt", "N10E010.out.hgt", "--voids", "10%", "--overwrite")
         self.assertEqual(self.known("N10E010.out.hgt"), known - round(known / 10))
 
+    def test_a_part_may_be_written_in_three_ways(self):
+        self.hgt()
+        for number, part in enumerate(["10%", "10 %", "0.1"]):
+            self.succeeds("sample", "N10E010.hgt", f"{number}.asc", "--keep", part)
+        self.assertEqual(self.read("0.asc"), self.read("1.asc"))
+        self.assertEqual(self.read("0.asc"), self.read("2.asc"))
+
     def test_every_keeps_a_regular_lattice(self):
         self.hgt()
         self.succeeds("sample", "N10E010.hgt", "N10E010.out.hgt", "--every", "8")
@@ -192,6 +199,31 @@ class Fill(CliTest):
         self.assertEqual((done.stdout, done.stderr), ("", ""))
 
 
+    def test_several_files_are_tiles_of_one_dem(self):
+        self.holed("N10E010.hgt", side=1201)
+        self.hgt("N10E011.hgt", side=1201, value=lambda c, r: height(c + 1200, r))
+        os.mkdir(self.path("tiles"))
+        for name in ("N10E010.hgt", "N10E011.hgt"):
+            self.write("tiles/" + name, self.read(name))
+        self.succeeds("fill", "N10E010.hgt", "N10E011.hgt", "from_files/")
+        self.succeeds("fill", "tiles", "from_folder/")
+        self.succeeds("fill", "N10E010.hgt", "N10E011.hgt", "by_parts/", "--memory", "1G")
+        for name in ("N10E010.hgt", "N10E011.hgt"):
+            self.assertEqual(self.read("from_files/" + name), self.read("from_folder/" + name))
+            self.assertEqual(self.read("by_parts/" + name), self.read("from_folder/" + name))
+
+    def test_creation_options_reach_the_file(self):
+        self.holed()
+        sizes = []
+        for name, options in {"a": ["--compress", "none"], "b": ["--compress", "zstd"],
+                              "c": ["--co", "COMPRESS=NONE", "--co", "TILED=NO"]}.items():
+            self.succeeds("fill", "N10E010.hgt", name + ".tif", *options)
+            sizes.append(os.path.getsize(self.path(name + ".tif")))
+        self.assertGreater(sizes[0], sizes[1])
+        self.assertNotEqual(sizes[0], sizes[2])
+        self.fails(2, "fill", "N10E010.hgt", "N10E010.out.hgt", "--co", "A=1", says=["A", "takes none"])
+
+
 class Evaluate(CliTest):
     def test_scores_the_filled_cells_alone_with_known(self):
         self.hgt()
@@ -223,7 +255,7 @@ class Evaluate(CliTest):
 class Curve(CliTest):
     def test_writes_table_json_and_picture(self):
         self.hgt()
-        done = self.succeeds("curve", "N10E010.hgt", "out", "-m", "mcmd,md", "-r", "50,5",
+        done = self.succeeds("curve", "N10E010.hgt", "out", "-m", "mcmd,md", "-r", "50%,5%",
                              "--repeats", "1", "--json")
         scores = json.loads(done.stdout)["scores"]
         self.assertEqual([(s["method"], s["kept_percent"]) for s in scores],
@@ -235,7 +267,7 @@ class Curve(CliTest):
 
     def test_progress_json_is_one_object_a_line(self):
         self.hgt(side=257)
-        done = self.succeeds("curve", "N10E010.hgt", "out", "-m", "idw", "-r", "1,2,5", "-q",
+        done = self.succeeds("curve", "N10E010.hgt", "out", "-m", "idw", "-r", "1%,2%,5%", "-q",
                              "--progress", "json")
         lines = [json.loads(line) for line in done.stderr.splitlines()]
         self.assertTrue(all(0 <= line["part"] <= 1 and "what" in line for line in lines))

@@ -62,7 +62,7 @@ class Finer(CliTest):
 
     def test_budget_draws_what_each_way_of_sampling_needs(self):
         self.raster()
-        facts = self.report("curve", "in.asc", "results", "--budget", "2", "--methods", "mcmd", "--rates", "2,5,20")
+        facts = self.report("curve", "in.asc", "results", "--budget", "2", "--methods", "mcmd", "--rates", "2%,5%,20%")
         self.assertEqual({n["strategy"] for n in facts["needed"]}, {"random", "regular", "silhouette", "greedy"})
         self.assertEqual(sorted(os.listdir(self.path("results"))), ["budget.csv", "budget.json", "budget.svg"])
 

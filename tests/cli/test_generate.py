@@ -33,6 +33,13 @@ class Generate(CliTest):
         for words in ("30 x 20", "UTM zone 19N"):
             self.assertIn(words, text)
 
+    def test_cell_takes_units_and_crs_takes_a_number(self):
+        self.succeeds("generate", "noise", "m.tif", "--size", "9", "--cell", "30m", "--crs", "32619")
+        self.assertEqual(self.facts("m.tif")["cell_crs"], [30, 30])
+        self.succeeds("generate", "noise", "s.tif", "--size", "9", "--cell", "1s", "--crs", "4326", "--origin", "9,47")
+        self.assertEqual(self.facts("s.tif")["cell_crs"], [1 / 3600, 1 / 3600])
+        self.fails(1, "generate", "noise", "x.tif", "--cell", "1s", says=["--cell = 1s", "degrees"])
+
     def test_a_part_of_a_terrain_has_the_heights_of_the_whole(self):
         self.succeeds("generate", "noise", "whole.asc", "--size", "8", "--origin", "0,210")
         self.succeeds("generate", "noise", "part.asc", "--size", "4", "--origin", "120,90")

@@ -78,12 +78,12 @@ class WhatItHolds(ReportTest):
 
     def test_a_curve_shows_each_method_at_each_rate(self):
         self.hgt(TRUTH, SIDE)
-        self.succeeds("curve", TRUTH, "curves", "--methods", "mcmd,nearest", "--rates", "50,10",
+        self.succeeds("curve", TRUTH, "curves", "--methods", "mcmd,nearest", "--rates", "50%,10%",
                       "--repeats", "1", "--report", "curve.html")
         data = self.data("curve.html")
         self.assertEqual([s["name"] for s in self.section(data, "Error")["series"]], ["mcmd", "nearest"])
         self.assertEqual(len(self.section(data, "RMSE over the removed cells, m")["rows"]), 2)
-        self.succeeds("curve", TRUTH, "budget", "--budget", "5", "--rates", "10,20", "--methods", "mcmd",
+        self.succeeds("curve", TRUTH, "budget", "--budget", "5", "--rates", "10%,20%", "--methods", "mcmd",
                       "--report", "budget.html")
         self.assertEqual(len(self.section(self.data("budget.html"), "Error")["series"]), 4)
 
@@ -158,7 +158,7 @@ class InABrowser(ReportTest):
         self.filled("--sigma", "sigma.tif")
         self.succeeds("evaluate", TRUTH, "filled.tif", "--known", "N10E010.hgt", "--sigma", "sigma.tif",
                       "--report", "errors.html")
-        self.succeeds("curve", TRUTH, "curves", "--methods", "mcmd,nearest", "--rates", "50,10",
+        self.succeeds("curve", TRUTH, "curves", "--methods", "mcmd,nearest", "--rates", "50%,10%",
                       "--repeats", "1", "--report", "curve.html")
         for name, charts in (("fill.html", 4), ("errors.html", 7), ("curve.html", 2)):
             for width in WIDTHS:

@@ -92,7 +92,7 @@ void add_curve(Program& program, Shell& shell) {
       "curve", kMeasure,
       "Measure the error and time of fill methods for several shares of known cells",
       "  dem curve whole.tif results\n"
-      "  dem curve whole.tif results --methods mcmd,mcmd:paper,idw --rates 50,10,3.4,1\n"
+      "  dem curve whole.tif results --methods mcmd,mcmd:paper,idw --rates 50%,10%,3.4%,1%\n"
       "  dem curve N44W072.hgt results --repeats 1 --overwrite\n"
       "  dem curve whole.tif results --budget 5,10 --methods spline");
   verb.work = [o, &shell] { return curve(*o, shell); };
@@ -103,10 +103,16 @@ void add_curve(Program& program, Shell& shell) {
   verb.option("-m,--methods", o->curve.methods, "A,B,C",
               "Names of fill methods, separated by commas (all of them)")
       .by_commas();
-  verb.option("-r,--rates", o->curve.percents, "P,P,P",
-              "Percentages of the cells that are kept, separated by commas")
-      .by_commas()
-      .show_default();
+  std::vector<std::string> normally;
+  for (const double percent : o->curve.percents) normally.push_back(fmt::format("{}%", percent));
+  Option& rates = verb.option_read_by(
+      "-r,--rates",
+      [o, first = true](const std::string& text) mutable {
+        if (std::exchange(first, false)) o->curve.percents.clear();
+        o->curve.percents.push_back(parse_percent("--rates", text));
+      },
+      "P%,P%", "Parts of the cells that are kept, separated by commas");
+  rates.by_commas().show_default(fmt::format("{}", fmt::join(normally, ","))).repeats = true;
   verb.option("--budget", o->budget.rmse_m, "M,M",
               "Measure instead how many cells each way of sampling needs for these RMSE in metres")
       .by_commas();

@@ -16,7 +16,8 @@ namespace dem::app {
 namespace {
 
 struct Options {
-  std::string in, out, sigma;
+  std::vector<std::string> files;
+  std::string in, out, sigma;  // in: the files, a line each
   std::optional<int> realisation;
   std::string roughness;  // "auto" or a number
   std::optional<std::uint64_t> seed;
@@ -261,7 +262,10 @@ int fill(const Options& o, Shell& shell) {
   const ChosenMethod chosen = choose(o);
   check(o.choice);
   const std::size_t memory = stream_memory(o);
-  for (const std::string& path : {o.out, o.sigma, o.origin, o.table})
+  WriteOptions as_asked = o.write;
+  as_asked.overwrite = shell.overwrite;
+  check_writable(o.out, as_asked);
+  for (const std::string& path : {o.sigma, o.origin, o.table})
     if (!path.empty()) check_writable(path, shell.overwrite);
   check_report(o.report, shell.overwrite);
 
@@ -328,12 +332,18 @@ void add_fill(Program& program, Shell& shell) {
       "fill", kEveryday, "Fill the voids of a DEM; known cells stay unchanged, bit for bit",
       "  dem fill N36E008.hgt filled.hgt\n"
       "  dem fill sparse.tif filled.tif --sigma sigma.tif           # with standard errors\n"
-      "  dem fill tiles/ filled/ --memory 2G                        # a folder of .hgt tiles\n"
+      "  dem fill *.hgt filled/ --memory 2G                         # tiles, filled as one DEM\n"
       "  dem fill sparse.tif filled.tif --report filled.html        # a page with pictures");
   verb.notes = "Methods: " + method_names() + " (their settings: dem methods NAME)\n" +
                HoleChoice::condition_help();
-  verb.work = [o, &shell] { return fill(*o, shell); };
-  verb.argument("IN", o->in, "DEM with voids, in any format that GDAL opens, or a folder of tiles")
+  verb.work = [o, &shell] {
+    o->in = fmt::format("{}", fmt::join(o->files, "\n"));
+    return fill(*o, shell);
+  };
+  verb.argument(
+          "IN", o->files,
+          "DEM with voids, in any format that GDAL opens, or a folder of tiles; several files "
+          "are tiles of one DEM")
       .kind("raster")
       .must_be_given();
   verb.argument("OUT", o->out,

@@ -51,8 +51,7 @@ void check_report(const std::string& path, bool overwrite) {
   if (path.empty()) return;
   const std::string extension = std::filesystem::path(path).extension().string();
   check_writable(path, overwrite);
-  if (extension != ".html" && extension != ".htm")
-    refuse("--report", path, "a file name in .html");
+  if (extension != ".html" && extension != ".htm") refuse("--report", path, "a file name in .html");
 }
 
 void Stopwatch::lap(std::string step) {

@@ -45,7 +45,9 @@ std::string crs_wkt(const std::string& name) {
   const GdalErrors quiet;
   OGRSpatialReference crs;
   const char* const only_names[] = {"ALLOW_NETWORK_ACCESS=NO", "ALLOW_FILE_ACCESS=NO", nullptr};
-  const bool known = crs.SetFromUserInput(name.c_str(), only_names) == OGRERR_NONE;
+  const bool number = name.find_first_not_of("0123456789") == name.npos;
+  const std::string full = number ? "EPSG:" + name : name;
+  const bool known = crs.SetFromUserInput(full.c_str(), only_names) == OGRERR_NONE;
   if (!known || (!crs.IsGeographic() && !crs.IsProjected()))
     throw std::invalid_argument(fmt::format(
         "crs = {}; must be a projected or geographic coordinate system, e.g. EPSG:32619",

@@ -11,7 +11,7 @@ namespace dem {
 /// Whether the coordinates are degrees of longitude and latitude.
 bool is_geographic(const GeoRef& ref);
 
-/// The coordinate system that a person names: "EPSG:32619", WKT, PROJ's words. "" for "". Throws
+/// The coordinate system that a person names: "EPSG:32619", "32619", WKT, PROJ's words. "" for "". Throws
 /// std::invalid_argument when it is unknown, or has no plane or geographic coordinates.
 std::string crs_wkt(const std::string& name);
 

@@ -9,13 +9,13 @@ namespace dem {
 
 enum class CellUnit { metres, degrees };
 
-/// The size of a cell, with its unit said: "30m", "1s" (arc second), "0.5min", "0.001deg".
+/// The size of a cell: "30" or "30m", "1s" (arc second), "0.5min", "0.001deg".
 struct CellSize {
   double value = 0;
   CellUnit unit = CellUnit::metres;
 };
 
-/// Throws std::invalid_argument when the text has no number above 0 or no unit.
+/// Throws std::invalid_argument when the text has no number above 0 or another unit.
 CellSize parse_cell_size(const std::string& text);
 
 /// A rectangle in the units of a coordinate system.

@@ -72,7 +72,8 @@ struct DemFile {
 /// Reads one band of elevations.
 /// Accepts: .hgt, .hgt.gz, .hgt.zip of any square size from 2 up, by our own reader; images (.png,
 ///          .exr, .jpg or with `heights`) by OpenImageIO; everything else that GDAL opens, its
-///          /vsizip/, /vsigzip/, /vsicurl/ paths included, and a folder of tiles as one raster.
+///          /vsizip/, /vsigzip/, /vsicurl/ paths included, and a folder of tiles as one raster, or
+///          several paths, each on a line of its own.
 /// Gives:   unknown cells have known = 0 and z = 0; no NaN, no infinity, no sentinel remains.
 /// Throws:  IoError, Cancelled.
 DemFile read_dem(const std::string& path, const ReadOptions& options = {}, const Run& run = {});
@@ -95,6 +96,8 @@ struct WriteOptions {
   std::optional<HeightRange> heights{};
   std::optional<double> unknown_grey{};  ///< for images; default: alpha 0 marks unknown cells
   std::vector<std::pair<std::string, std::string>> metadata{};  ///< added to the source's
+  /// Of GDAL's driver, {{"COMPRESS", "ZSTD"}}; they come before `compress`. .hgt and images have none.
+  std::vector<std::pair<std::string, std::string>> creation_options{};
   /// The cells are kinds, not heights: a colour table, and CLASS_1=NAME in the metadata.
   std::vector<CellClass> classes{};
 };
@@ -110,6 +113,10 @@ void write_dem(const std::string& path, const Dem& dem, const Source& source = {
 /// Throws IoError when `path` exists and overwriting was not asked for, or its folder does not
 /// exist or cannot be written: to be asked before long work.
 void check_writable(const std::string& path, bool overwrite);
+
+/// As above, and throws IoError when the format is unknown, cannot be written, or has not the
+/// creation options.
+void check_writable(const std::string& path, const WriteOptions& options);
 
 /// The .hgt and .tif files of a folder, by name. Throws IoError when there is none.
 std::vector<std::string> tiles_in(const std::string& folder);

@@ -71,11 +71,14 @@ CellSize parse_cell_size(const std::string& text) {
     double factor;
     CellUnit unit;
   };
-  constexpr std::array units{
-      Unit{"deg", 1, CellUnit::degrees},         Unit{"min", 1 / 60., CellUnit::degrees},
-      Unit{"sec", 1 / 3600., CellUnit::degrees}, Unit{"s", 1 / 3600., CellUnit::degrees},
-      Unit{"km", 1000, CellUnit::metres},        Unit{"m", 1, CellUnit::metres}};
-  constexpr auto must_be = "a size above 0 with its unit: 30m, 1s (arc second), 0.001deg";
+  constexpr std::array units{Unit{"deg", 1, CellUnit::degrees},
+                             Unit{"min", 1 / 60., CellUnit::degrees},
+                             Unit{"sec", 1 / 3600., CellUnit::degrees},
+                             Unit{"s", 1 / 3600., CellUnit::degrees},
+                             Unit{"km", 1000, CellUnit::metres},
+                             Unit{"m", 1, CellUnit::metres},
+                             Unit{"", 1, CellUnit::metres}};
+  constexpr auto must_be = "a size above 0: 30 or 30m, 1s (arc second), 0.001deg";
   for (const Unit& u : units) {
     if (!text.ends_with(u.suffix)) continue;
     const std::string_view number(text.data(), text.size() - u.suffix.size());

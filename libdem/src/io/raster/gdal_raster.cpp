@@ -277,9 +277,9 @@ void turn_north_up(DemFile& file) {
 
 namespace {
 
-/// The tiles of a folder as one raster.
-DatasetPtr open_folder(const std::string& path, const GdalErrors& errors) {
-  const std::vector<std::string> tiles = tiles_in(path);
+/// Tiles as one raster.
+DatasetPtr open_tiles(const std::string& path, const std::vector<std::string>& tiles,
+                      const GdalErrors& errors) {
   CPLStringList names;
   for (const std::string& tile : tiles) names.AddString(tile.c_str());
   CPLStringList flags;
@@ -298,7 +298,9 @@ OpenBand open_band(const std::string& path, const ReadOptions& options, GdalErro
   OpenBand open;
   std::error_code error;  // then GDAL says what is wrong with it
   if (std::filesystem::is_directory(path, error))
-    open.dataset = open_folder(path, errors);
+    open.dataset = open_tiles(path, tiles_in(path), errors);
+  else if (is_list_of_files(path))
+    open.dataset = open_tiles(path, files_of_list(path), errors);
   else
     open.dataset.reset(GDALOpenEx(path.c_str(),
                                   GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR,
@@ -528,7 +530,33 @@ CPLStringList creation_options(const std::string& format, CellType type,
     if (options.compress) list.SetNameValue("PREDICTOR", floating ? "3" : "2");
   }
   if (format == "COG" && options.compress) list.SetNameValue("PREDICTOR", "YES");
+  for (const auto& [key, value] : options.creation_options)
+    list.SetNameValue(key.c_str(), value.c_str());
+  const std::string method = list.FetchNameValueDef("COMPRESS", "");
+  const bool predicts = EQUAL(method.c_str(), "DEFLATE") || EQUAL(method.c_str(), "LZW") ||
+                        EQUAL(method.c_str(), "ZSTD");
+  const auto is_predictor = [](const auto& entry) {
+    return EQUAL(entry.first.c_str(), "PREDICTOR") != 0;
+  };
+  if (!predicts && std::ranges::none_of(options.creation_options, is_predictor))
+    list.SetNameValue("PREDICTOR", nullptr);
   return list;
+}
+
+void check_creation_options(const std::string& path, const std::string& format,
+                            const WriteOptions& options) {
+  register_gdal();
+  const GDALDriverH driver = checked_driver(path, format);
+  CPLStringList list;
+  for (const auto& [key, value] : options.creation_options)
+    list.SetNameValue(key.c_str(), value.c_str());
+  if (list.empty()) return;
+  CPLErrorReset();
+  CPLPushErrorHandler(CPLQuietErrorHandler);
+  const bool good = GDALValidateCreationOptions(driver, list.List()) != FALSE;
+  const std::string cause = CPLGetLastErrorMsg();
+  CPLPopErrorHandler();
+  if (!good) throw IoError(path, cause);
 }
 
 GDALDriverH checked_driver(const std::string& path, const std::string& format) {

@@ -49,6 +49,10 @@ void describe_dataset(GDALDatasetH dataset, const GeoRef& ref, CellType type,
 CPLStringList creation_options(const std::string& format, CellType type,
                                const WriteOptions& options, const Run& run);
 
+/// Throws IoError when the driver has not one of the creation options, or not its value.
+void check_creation_options(const std::string& path, const std::string& format,
+                            const WriteOptions& options);
+
 /// Throws IoError when there is no such driver or it cannot write.
 GDALDriverH checked_driver(const std::string& path, const std::string& format);
 

@@ -12,6 +12,7 @@
 #include "io/raster/heightmap.h"
 #include "io/raster/hgt.h"
 #include "io/raster/nodata.h"
+#include "io/raster/tile_folder.h"
 
 namespace dem {
 namespace {
@@ -108,7 +109,9 @@ struct RasterReader::File {
 };
 
 RasterReader::RasterReader(const std::string& path, const ReadOptions& options) {
-  if (is_hgt_name(path) || is_image_name(path) || options.heights || options.unknown_grey) {
+  const bool whole =
+      is_hgt_name(path) || is_image_name(path) || options.heights || options.unknown_grey;
+  if (whole && !is_list_of_files(path)) {
     whole_ = std::make_unique<DemFile>(read_dem(path, options));
     return;
   }

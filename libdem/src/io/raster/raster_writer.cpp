@@ -79,7 +79,9 @@ class TiffFile : public RasterWriter::File {
         plain_(cog ? staged_.path() + ".plain" : staged_.path()),
         nodata_(nodata_of(path, type_, source, options)) {
     const GdalErrors errors;
-    const auto list = creation_options("GTiff", type_, options, run);
+    WriteOptions own = options;
+    if (cog) own.creation_options.clear();  // those are for the copy
+    const auto list = creation_options("GTiff", type_, own, run);
     dataset_.reset(GDALCreate(checked_driver(path, "GTiff"), plain_.c_str(), size.cols, size.rows,
                               1, gdal_type(type_), const_cast<char**>(list.List())));
     if (!dataset_) errors.fail(path, "cannot be written");

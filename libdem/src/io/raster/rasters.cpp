@@ -45,16 +45,17 @@ void write_by_parts(const std::string& path, const Dem& dem, const Source& sourc
 
 DemFile read_dem(const std::string& path, const ReadOptions& options, const Run& run) {
   const bool grey = options.heights || options.unknown_grey;
-  const bool hgt = is_hgt_name(path);
+  const bool list = is_list_of_files(path);
+  const bool hgt = !list && is_hgt_name(path);
   if (hgt && grey)
     throw IoError(path, "is an .hgt, whose heights are metres; it takes no grey levels");
   if (!hgt && !options.tile.empty())
     throw IoError(path, fmt::format("is no .hgt; --tile {} has no meaning for it", options.tile));
   check_not_empty(path);
 
-  DemFile file = hgt                           ? read_hgt(path, options, run)
-                 : grey || is_image_name(path) ? read_heightmap(path, options, run)
-                                               : read_gdal(path, options, run);
+  DemFile file = hgt                                      ? read_hgt(path, options, run)
+                 : !list && (grey || is_image_name(path)) ? read_heightmap(path, options, run)
+                                                          : read_gdal(path, options, run);
   try {
     file.dem.spacing = middle_spacing(file.dem.ref, file.dem.size());
   } catch (const std::invalid_argument& error) {
@@ -79,6 +80,27 @@ void write_dem(const std::string& path, const Dem& dem, const Source& source,
   if (format.empty())
     throw IoError(path, "its extension names no format that can be written; give --format");
   write_gdal(path, format, dem, source, options, run);
+}
+
+void check_writable(const std::string& path, const WriteOptions& options) {
+  std::string format = options.format;
+  if (format.empty())
+    format = is_image_name(path) || options.heights || options.unknown_grey ? "image"
+             : is_hgt_name(path) || is_tile_folder(path)                    ? "HGT"
+                                                                            : gdal_format_of(path);
+  if (format.empty())
+    throw IoError(path, "its extension names no format that can be written; give the format");
+  const bool of_gdal = format != "image" && format != "HGT";
+  if (of_gdal && is_tile_folder(path))
+    throw IoError(path, fmt::format("a folder takes .hgt tiles, not {}", format));
+  if (!of_gdal && !options.creation_options.empty())
+    throw IoError(path, fmt::format("creation option {}: {} takes none",
+                                    options.creation_options.front().first,
+                                    format == "HGT" ? "an .hgt" : "an image"));
+  if (format == "HGT" && options.type.value_or(CellType::int16) != CellType::int16)
+    throw IoError(path, "an .hgt holds int16 only");
+  if (of_gdal) check_creation_options(path, format == "VRT" ? "GTiff" : format, options);
+  check_writable(path, options.overwrite);
 }
 
 void check_writable(const std::string& path, bool overwrite) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <sstream>
 #include <system_error>
 #include <utility>
 
@@ -14,6 +15,15 @@ namespace dem {
 namespace fs = std::filesystem;
 
 bool is_tile_folder(const std::string& path) { return path.ends_with('/'); }
+
+bool is_list_of_files(const std::string& path) { return path.find('\n') != std::string::npos; }
+
+std::vector<std::string> files_of_list(const std::string& path) {
+  std::vector<std::string> files;
+  std::istringstream lines(path);
+  for (std::string line; std::getline(lines, line);) files.push_back(line);
+  return files;
+}
 
 std::string tile_folder_of(const std::string& vrt) {
   return fs::path(vrt).replace_extension().string() + "_tiles/";

@@ -3,8 +3,13 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace dem {
+
+/// Whether a path is several paths, each on a line of its own.
+bool is_list_of_files(const std::string& path);
+std::vector<std::string> files_of_list(const std::string& path);
 
 /// Whether a path to write to names a folder of tiles: it ends in a slash.
 bool is_tile_folder(const std::string& path);
