@@ -194,7 +194,7 @@ class BadInput(CliTest):
     def test_options_that_do_not_go_together(self):
         self.write("p.csv", csv([(10, 500, 1)]))
         self.fails(1, "grid", "p.csv", "g.tif", "--bounds", "0,0,9,9", says=["--bounds needs --cell"])
-        self.fails(1, "grid", "p.csv", "g.tif", "--cell", "30", says=["with its unit"])
+        self.fails(1, "grid", "p.csv", "g.tif", "--cell", "30ells", says=["30 or 30m"])
         self.fails(1, "grid", "p.csv", "g.tif", "--like", "a.tif", "--cell", "30m", says=["--like says it all"])
         self.fails(1, "grid", "p.csv", "g.tif", "-s", "nonsense=1", says=["nonsense"])
         self.fails(1, "grid", "p.csv", "g.tif", "--no-fill", "--sigma", "s.tif", says=["--no-fill"])

@@ -46,6 +46,8 @@ class Reader {
     }
     give_arguments();
     for (const auto& [option, text] : given_) option->accept(text);
+    for (const Option& o : command_.options)
+      if (o.required && o.count == 0) fail(o.name() + " is missing");
     return Parsed::all;
   }
 
