@@ -92,7 +92,9 @@ void check_writable(const std::string& path, const WriteOptions& options) {
     throw IoError(path, "its extension names no format that can be written; give the format");
   const bool of_gdal = format != "image" && format != "HGT";
   if (of_gdal && is_tile_folder(path))
-    throw IoError(path, fmt::format("a folder takes .hgt tiles, not {}", format));
+    throw IoError(
+        path,
+        fmt::format("a folder takes .hgt tiles, no {}; name a .vrt for tiles of GeoTIFF", format));
   if (!of_gdal && !options.creation_options.empty())
     throw IoError(path, fmt::format("creation option {}: {} takes none",
                                     options.creation_options.front().first,
