@@ -151,6 +151,12 @@ double parse_share(std::string_view option, const std::string& text) {
   return percent / 100;
 }
 
+std::string option_of(std::string_view field) {
+  std::string option = "--" + std::string(field);
+  std::ranges::replace(option, '_', '-');
+  return option;
+}
+
 std::string grouped(std::size_t n) {
   if (n < 1000) return fmt::format("{}", n);
   return fmt::format("{} {:03}", grouped(n / 1000), n % 1000);

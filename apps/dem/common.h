@@ -99,6 +99,9 @@ double parse_share(std::string_view option, const std::string& text);
 /// Throws std::invalid_argument `option = text; must be ...`.
 double parse_number(std::string_view option, const std::string& text, std::string_view must_be);
 
+/// The option of the command line that sets a field of the library: "max_area_km2" -> "--max-area-km2".
+std::string option_of(std::string_view field);
+
 /// 1050625 -> "1 050 625".
 std::string grouped(std::size_t n);
 

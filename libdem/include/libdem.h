@@ -9,7 +9,7 @@
  *   libdem_dem *holes = NULL, *filled = NULL;
  *   libdem_error error;
  *   if (libdem_read("N36E008.hgt", &holes, &error) ||
- *       libdem_fill(holes, NULL, NULL, &filled, &error))
+ *       libdem_fill(holes, NULL, NULL, NULL, &filled, &error))
  *     fprintf(stderr, "%s\n", error.text);
  *
  * What a function makes, it stores through its last pointer but one, and the caller frees it. When
@@ -126,11 +126,22 @@ libdem_status libdem_set(libdem_method* method, const char* name, const char* va
 /* Frees a method; NULL is allowed. */
 void libdem_free_method(libdem_method* method);
 
-/* Fills every unknown cell into a DEM of its own; known cells come back bit for bit. The raster
- * is one problem, as with `dem fill --whole`. method NULL: the default; run NULL: all cores, no
- * progress. */
-libdem_status libdem_fill(const libdem_dem* dem, const libdem_method* method, const libdem_run* run,
-                          libdem_dem** filled, libdem_error* error);
+/* Which voids are filled, and how. A struct of zeros chooses all of them. */
+typedef struct libdem_choice {
+  int whole;             /* not 0: one window for the whole raster, as with `dem fill --whole` */
+  int inner_only;        /* not 0: voids that touch the border are left */
+  double max_area_km2;   /* larger voids are left; 0: no limit */
+  double max_distance_m; /* voids with a cell farther from known cells are left; 0: no limit */
+  size_t min_cells;      /* smaller voids are left */
+  const char* where;     /* a condition, "area_km2 < 5 and not at_border"; NULL: none */
+} libdem_choice;
+
+/* Fills the voids into a DEM of its own; known cells come back bit for bit. The heights are those
+ * that `dem fill` writes. Cells of voids that were left are unknown. method NULL: the default;
+ * choice NULL: all voids; run NULL: all cores, no progress. */
+libdem_status libdem_fill(const libdem_dem* dem, const libdem_method* method,
+                          const libdem_choice* choice, const libdem_run* run, libdem_dem** filled,
+                          libdem_error* error);
 
 #ifdef __cplusplus
 }

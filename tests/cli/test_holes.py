@@ -52,7 +52,7 @@ class Choice(HoleTest):
     def test_the_report_names_the_option_that_left_cells(self):
         self.holed()
         done = self.succeeds("fill", "N10E010.hgt", "o.tif", "--min-cells", "7")
-        self.assertIn("6 left in 1 voids by --min-cells", done.stderr)
+        self.assertIn("6 left in 1 void by --min-cells", done.stderr)
 
     def test_region_takes_holes_in_its_polygons(self):
         self.holed()
@@ -96,7 +96,7 @@ class Report(HoleTest):
         self.holed()
         self.succeeds("fill", "N10E010.hgt", "o.tif", "--report-holes", "t.json", "--inner-only")
         rows = json.loads(self.read("t.json"))["holes"]
-        self.assertEqual([r.get("left_by") for r in rows], ["--inner-only", None])
+        self.assertEqual([r.get("left_by") for r in rows], ["inner_only", None])
         self.assertEqual(rows[1]["filled"], 12)
         self.assertGreater(rows[1]["rim_error_m"], 0)
 

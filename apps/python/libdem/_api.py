@@ -190,13 +190,12 @@ def fill(z, known=None, *, method=_core.default_method, spacing=None, nodata=Non
     Copies: z once (a Dem too: it is not changed); what comes back is not copied.
     """
     dem, temporary = _as_dem(z, known, spacing, nodata, to_world, crs)
-    choice = _call.HoleChoice(inner_only, max_area_km2, max_distance_m, min_cells, where,
-                              os.fspath(region))
+    choice = _call.HoleChoice(inner_only, max_area_km2, max_distance_m, min_cells, where)
     files = [os.fspath(file) for file in ([aux] if isinstance(aux, (str, os.PathLike)) else aux)]
     with callback(progress) as call:
         filled, sigma, source, report = _call.fill(
             dem, temporary, method, _method_settings(method, settings), choice, whole, files,
-            os.fspath(water), report_holes, _threads(threads), call)
+            os.fspath(water), os.fspath(region), report_holes, _threads(threads), call)
     return Filled(filled, sigma, source, json.loads(report))
 
 

@@ -49,7 +49,7 @@ DemFile make(const py::array& z, const py::object& known, const std::optional<do
   if (spacing && !crs.empty())
     throw std::invalid_argument("crs needs to_world, the place of the cells in it");
   dem.ref = {to_world.value_or(Six{0, dx, 0, 0, 0, -dy}), crs_wkt(crs)};
-  dem.spacing = middle_spacing(dem.ref, dem.size());
+  set_spacing(dem);
   return file;
 }
 

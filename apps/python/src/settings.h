@@ -17,10 +17,4 @@ inline ChosenMethod choose_method(const std::string& name, const Settings& setti
   return chosen;
 }
 
-/// Whether the method, so set, gives a standard deviation.
-inline bool gives_sigma(const ChosenMethod& chosen) {
-  const Dem one{Raster<float>({1, 1}), Mask({1, 1}, 1), {}, {}};
-  return !chosen.method->fill(one, chosen.settings, {}).sigma.empty();
-}
-
 }  // namespace dem::python

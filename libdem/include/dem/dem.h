@@ -24,7 +24,7 @@ struct GeoRef {
 GeoRef crop(GeoRef ref, const Box& box);
 
 /// Size of a cell in metres. On a geographic grid dx changes from row to row: one Spacing then
-/// stands for the middle row (dem/geodesy.h gives one for every row).
+/// stands for the middle row, and Dem::row_spacing has one for every row.
 struct Spacing {
   double dx_m = 1;
   double dy_m = 1;
@@ -43,9 +43,14 @@ struct Dem {
   Spacing spacing;
   /// Where a surface may jump: break_east and break_south of each cell; empty: nowhere.
   Mask breaks{};
+  /// Spacing of each row, where rows differ (cells in degrees); empty: `spacing` in every row.
+  std::vector<Spacing> row_spacing{};
 
   Size size() const { return z.size(); }
 };
+
+/// The spacing of each row. Throws std::invalid_argument when row_spacing has another length.
+std::vector<Spacing> spacing_of_rows(const Dem& dem);
 
 /// A part of a DEM, with a spacing of its own; z is 0 where unknown.
 Dem crop(const Dem& dem, const Box& box, Spacing spacing);

@@ -104,6 +104,12 @@ Spacing middle_spacing(const GeoRef& ref, Size size) {
   return geographic_spacing(earth, ref, crs.unit, (size.cols - 1) / 2.0, (size.rows - 1) / 2.0);
 }
 
+void set_spacing(Dem& dem) {
+  dem.spacing = middle_spacing(dem.ref, dem.size());
+  dem.row_spacing.clear();
+  if (is_geographic(dem.ref)) dem.row_spacing = spacing_by_row(dem.ref, dem.size());
+}
+
 double cell_area_m2(const GeoRef& ref, int col, int row) {
   check_ref(ref);
   const CrsUnits crs = crs_units(ref.crs_wkt);

@@ -13,7 +13,7 @@
 #include <span>
 #include <stdexcept>
 
-#include "dem/io/geodesy.h"
+#include "dem/fill.h"
 #include "dem/io/methods.h"
 #include "dem/io/rasters.h"
 
@@ -123,6 +123,17 @@ void try_out(const dem::ChosenMethod& chosen) {
   chosen.method->fill(one, chosen.settings, {});
 }
 
+/// Limits of 0 are none.
+dem::HoleChoice holes_of(const libdem_choice& choice) {
+  dem::HoleChoice holes;
+  holes.inner_only = choice.inner_only != 0;
+  if (choice.max_area_km2 != 0) holes.max_area_km2 = choice.max_area_km2;
+  if (choice.max_distance_m != 0) holes.max_distance_m = choice.max_distance_m;
+  if (choice.min_cells != 0) holes.min_cells = choice.min_cells;
+  if (choice.where) holes.where = choice.where;
+  return holes;
+}
+
 dem::Run run_of(const libdem_run* run) {
   if (!run) return {};
   if (run->threads < 0)
@@ -150,9 +161,6 @@ libdem_status libdem_create(const float* heights, const uint8_t* known, int cols
 libdem_status libdem_read(const char* path, libdem_dem** dem, libdem_error* error) {
   return making(dem, error, [&] {
     dem::DemFile file = dem::read_dem(&given(path, "path"));
-    // The cell size that the command line fills a whole raster with: the same cells come out.
-    const dem::Size size = file.dem.size();
-    file.dem.spacing = dem::spacing_by_row(file.dem.ref, size)[std::size_t(size.rows / 2)];
     return std::unique_ptr<libdem_dem>(
         new libdem_dem{std::move(file.dem), std::move(file.source), {}});
   });
@@ -245,17 +253,19 @@ libdem_status libdem_set(libdem_method* method, const char* name, const char* va
 
 void libdem_free_method(libdem_method* method) { delete method; }
 
-libdem_status libdem_fill(const libdem_dem* dem, const libdem_method* method, const libdem_run* run,
-                          libdem_dem** filled, libdem_error* error) {
+libdem_status libdem_fill(const libdem_dem* dem, const libdem_method* method,
+                          const libdem_choice* choice, const libdem_run* run, libdem_dem** filled,
+                          libdem_error* error) {
   return making(filled, error, [&] {
     const libdem_dem& holes = given(dem, "dem");
-    const dem::ChosenMethod chosen = method ? method->chosen : choose(nullptr);
-    dem::Filled result = chosen.method->fill(holes.dem, chosen.settings, run_of(run));
-    auto made = std::make_unique<libdem_dem>();
-    made->dem = {std::move(result.z), dem::Mask(holes.dem.size(), 1), holes.dem.ref,
-                 holes.dem.spacing};
-    made->source = holes.source;
-    made->sigma = std::move(result.sigma);
-    return made;
+    dem::FillOptions options;
+    if (method) options.method = method->chosen;
+    if (choice) {
+      options.holes = holes_of(*choice);
+      options.whole = choice->whole != 0;
+    }
+    dem::HoleFill result = dem::fill_holes(holes.dem, options, {}, run_of(run));
+    return std::unique_ptr<libdem_dem>(
+        new libdem_dem{std::move(result.dem), holes.source, std::move(result.sigma)});
   });
 }

@@ -56,7 +56,7 @@ DemFile read_dem(const std::string& path, const ReadOptions& options, const Run&
                  : grey || is_image_name(path) ? read_heightmap(path, options, run)
                                                : read_gdal(path, options, run);
   try {
-    file.dem.spacing = middle_spacing(file.dem.ref, file.dem.size());
+    set_spacing(file.dem);
   } catch (const std::invalid_argument& error) {
     throw IoError(path, error.what());
   }
