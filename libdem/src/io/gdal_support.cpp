@@ -10,7 +10,7 @@
 
 #include "dem/io/rasters.h"
 
-namespace dem {
+namespace dem::io {
 
 void register_gdal() {
   static const bool done = (GDALAllRegister(), true);
@@ -76,4 +76,4 @@ DatasetPtr wrap_cells(void* cells, int cols, int rows, GDALDataType type) {
   return dataset;
 }
 
-}  // namespace dem
+}  // namespace dem::io

@@ -11,7 +11,7 @@
 
 #include "dem/run.h"
 
-namespace dem {
+namespace dem::io {
 
 /// Registers GDAL's drivers, once.
 void register_gdal();
@@ -65,4 +65,4 @@ using DatasetPtr = std::unique_ptr<void, CloseDataset>;
 /// A dataset in memory whose single band is the caller's own cells; they must outlive it.
 DatasetPtr wrap_cells(void* cells, int cols, int rows, GDALDataType type);
 
-}  // namespace dem
+}  // namespace dem::io

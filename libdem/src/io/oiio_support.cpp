@@ -9,7 +9,7 @@
 #include "io/gdal_support.h"
 #include "io/staged_file.h"
 
-namespace dem {
+namespace dem::io {
 
 bool OiioProgress::call(void* self, float part) {
   auto& progress = *static_cast<OiioProgress*>(self);
@@ -67,4 +67,4 @@ void write_pixels(const std::string& path, const OIIO::ImageSpec& spec, const vo
   staged.commit();
 }
 
-}  // namespace dem
+}  // namespace dem::io

@@ -8,7 +8,7 @@
 
 #include "dem/run.h"
 
-namespace dem {
+namespace dem::io {
 
 /// Hands OpenImageIO's progress to a Run and brings its exceptions back.
 class OiioProgress {
@@ -35,4 +35,4 @@ std::string one_line(std::string message);
 void write_pixels(const std::string& path, const OIIO::ImageSpec& spec, const void* pixels,
                   bool overwrite, const Run& run);
 
-}  // namespace dem
+}  // namespace dem::io
