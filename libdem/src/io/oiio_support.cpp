@@ -11,18 +11,6 @@
 
 namespace dem::io {
 
-bool OiioProgress::call(void* self, float part) {
-  auto& progress = *static_cast<OiioProgress*>(self);
-  if (progress.error_) return true;
-  try {
-    progress.run_.report(part, progress.what_);
-    return false;
-  } catch (...) {
-    progress.error_ = std::current_exception();
-    return true;
-  }
-}
-
 std::string one_line(std::string message) {
   std::ranges::replace(message, '\n', ' ');
   return message;
