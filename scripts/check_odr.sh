@@ -18,7 +18,7 @@ done
 join() {
   local out=$1
   shift
-  g++ -O0 -flto -r -nostdlib -flinker-output=nolto-rel -Wodr -Werror=odr -o "$out" "$@"
+  g++ -O0 -flto -r -nostdlib -flinker-output=rel -Wodr -Werror=odr -o "$out" "$@"
 }
 
 if [[ "${1:-}" == --self-test ]]; then
