@@ -8,6 +8,13 @@ add_test(NAME house.layers
 add_test(NAME house.layers_check_finds_planted_violations
          COMMAND Python3::Interpreter ${PROJECT_SOURCE_DIR}/scripts/check_layers.py --self-test)
 
+# The objects stay in build/.../odr, so that a second run compiles only what has changed.
+add_test(NAME house.odr
+         COMMAND ${PROJECT_SOURCE_DIR}/scripts/check_odr.sh ${PROJECT_BINARY_DIR}/odr)
+set_tests_properties(house.odr PROPERTIES LABELS slow TIMEOUT 1800)
+add_test(NAME house.odr_check_finds_a_planted_violation
+         COMMAND ${PROJECT_SOURCE_DIR}/scripts/check_odr.sh --self-test)
+
 # The consumer's own folder is build/.../tests/consumer*, so nothing outside the build is touched.
 add_test(NAME house.consumer_without_gis
          COMMAND ${CMAKE_COMMAND} -DSOURCE=${PROJECT_SOURCE_DIR}
@@ -24,7 +31,7 @@ if(DEM_BUILD_IO AND DEM_BUILD_APPS AND NOT DEM_SANITIZE)
   set(docs_tests house.docs house.tutorial)
 endif()
 set(house_tests ${docs_tests} house.format house.layers house.layers_check_finds_planted_violations
-    house.consumer_without_gis)
+    house.odr_check_finds_a_planted_violation house.consumer_without_gis)
 if(DEM_BUILD_IO AND NOT DEM_SANITIZE)
   add_test(NAME house.consumer
            COMMAND ${CMAKE_COMMAND} -DBUILD=${PROJECT_BINARY_DIR}

@@ -12,6 +12,7 @@
 #include "numeric/random.h"
 
 namespace dem {
+using namespace numeric;
 namespace {
 
 /// Rough ground of whole metres by integer arithmetic; every ninth cell or so unknown on request.

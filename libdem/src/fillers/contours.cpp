@@ -14,6 +14,7 @@
 #include "numeric/parallel.h"
 
 namespace dem {
+using namespace numeric;
 namespace {
 
 constexpr float infinite = std::numeric_limits<float>::infinity();

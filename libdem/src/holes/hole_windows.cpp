@@ -13,6 +13,7 @@
 #include "numeric/random.h"
 
 namespace dem {
+using namespace numeric;
 namespace {
 
 constexpr int least_margin = 6;  // the spline's springs span three cells and bend with a few more

@@ -19,6 +19,7 @@
 #include "io/points/ogr_layers.h"
 
 namespace dem {
+using namespace io;
 namespace {
 
 const std::map<std::string, double> greys{

@@ -8,6 +8,7 @@
 #include "io/oiio_support.h"
 
 namespace dem {
+using namespace io;
 namespace {
 
 // A third of the bytes of the library's own 98, and no difference to the eye.

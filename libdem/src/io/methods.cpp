@@ -14,6 +14,7 @@
 #include "io/oiio_support.h"
 
 namespace dem {
+using namespace io;
 namespace {
 
 /// The result of another library, with known cells bit for bit again whatever it did to them.

@@ -9,19 +9,7 @@
 #include "io/gdal_support.h"
 #include "io/staged_file.h"
 
-namespace dem {
-
-bool OiioProgress::call(void* self, float part) {
-  auto& progress = *static_cast<OiioProgress*>(self);
-  if (progress.error_) return true;
-  try {
-    progress.run_.report(part, progress.what_);
-    return false;
-  } catch (...) {
-    progress.error_ = std::current_exception();
-    return true;
-  }
-}
+namespace dem::io {
 
 std::string one_line(std::string message) {
   std::ranges::replace(message, '\n', ' ');
@@ -67,4 +55,4 @@ void write_pixels(const std::string& path, const OIIO::ImageSpec& spec, const vo
   staged.commit();
 }
 
-}  // namespace dem
+}  // namespace dem::io

@@ -3,28 +3,21 @@
 
 #include <OpenImageIO/imageio.h>
 
-#include <exception>
 #include <string>
 
 #include "dem/run.h"
+#include "io/kept_progress.h"
 
-namespace dem {
+namespace dem::io {
 
 /// Hands OpenImageIO's progress to a Run and brings its exceptions back.
-class OiioProgress {
+class OiioProgress : public KeptProgress {
  public:
-  OiioProgress(const Run& run, std::string what) : run_(run), what_(std::move(what)) {}
-
+  using KeptProgress::KeptProgress;
   /// Gives true to stop, as OpenImageIO wants it.
-  static bool call(void* self, float part);
-  void rethrow() const {
-    if (error_) std::rethrow_exception(error_);
+  static bool call(void* self, float part) {
+    return !static_cast<OiioProgress*>(self)->report(part);
   }
-
- private:
-  const Run& run_;
-  std::string what_;
-  std::exception_ptr error_;
 };
 
 /// An OpenImageIO message on one line.
@@ -35,4 +28,4 @@ std::string one_line(std::string message);
 void write_pixels(const std::string& path, const OIIO::ImageSpec& spec, const void* pixels,
                   bool overwrite, const Run& run);
 
-}  // namespace dem
+}  // namespace dem::io

@@ -12,7 +12,7 @@
 
 #include "dem/io/rasters.h"
 
-namespace dem {
+namespace dem::io {
 namespace fs = std::filesystem;
 
 std::string extension(const std::string& path) {
@@ -88,8 +88,12 @@ void StagedFile::commit() {
   }
 }
 
+}  // namespace dem::io
+
+namespace dem {
+
 void write_text(const std::string& path, const std::string& text, bool overwrite) {
-  StagedFile staged(path, overwrite);
+  io::StagedFile staged(path, overwrite);
   staged.write(text);
   staged.commit();
 }

@@ -16,6 +16,7 @@
 #include "numeric/random.h"
 
 namespace dem {
+using namespace numeric;
 namespace {
 
 /// Tells the draws of this file apart from other uses of the same seed.

@@ -10,6 +10,7 @@
 #include "numeric/cubic.h"
 
 namespace dem {
+using namespace numeric;
 namespace {
 
 /// A pass corrects a height by at most so many times what the plane moved it by: where points

@@ -7,6 +7,7 @@
 #include "methods/find_row.h"
 
 namespace dem {
+using namespace methods;
 
 std::vector<FieldInfo> describe(const std::vector<Field>& fields) {
   std::vector<FieldInfo> infos;

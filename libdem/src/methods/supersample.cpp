@@ -10,6 +10,7 @@
 #include "numeric/cubic.h"
 
 namespace dem {
+using namespace numeric;
 namespace {
 
 /// Along one axis: coarse index = origin + step * fine index.

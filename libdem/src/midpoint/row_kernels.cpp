@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <limits>
 
-#include "numeric/vectorised.h"
+#include "numeric/simd.h"
 
-namespace dem {
+namespace dem::midpoint {
 namespace {
 
 inline std::int32_t mask_of(bool condition) { return -std::int32_t(condition); }
@@ -156,4 +156,4 @@ DEM_VECTORISED float lowest_of_known(const float* z_row, const std::uint8_t* kno
   return std::bit_cast<float>(ordered(least));
 }
 
-}  // namespace dem
+}  // namespace dem::midpoint

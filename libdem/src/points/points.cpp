@@ -12,6 +12,7 @@
 #include "numeric/parallel.h"
 
 namespace dem {
+using namespace numeric;
 namespace {
 
 /// Points nearer to a centre than this part of a cell lie on it: coordinates as text are rounded.

@@ -16,6 +16,8 @@
 #include "render/sky.h"
 
 namespace dem {
+using namespace numeric;
+using namespace render;
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();

@@ -8,7 +8,7 @@
 #include "dem/dem.h"
 #include "spline/springs.h"
 
-namespace dem {
+namespace dem::spline {
 
 /// A row of the matrix A at a cell some of whose springs are cut; entries in the order of `diamond`.
 struct CutCell {
@@ -49,4 +49,4 @@ std::vector<std::vector<int>> cells_near_breaks(const Mask& breaks, int reach);
 /// it stands for is.
 Mask coarser_breaks(const Mask& fine, Size coarse, bool half_x, bool half_y);
 
-}  // namespace dem
+}  // namespace dem::spline

@@ -9,6 +9,7 @@
 
 #include "dem/breaklines.h"
 #include "dem/mcmd.h"
+#include "numeric/distance.h"
 #include "numeric/parallel.h"
 #include "spline/overshoot.h"
 #include "spline/roughness.h"
@@ -17,6 +18,8 @@
 #include "spline/spline_solver.h"
 
 namespace dem {
+using namespace numeric;
+using namespace spline;
 namespace {
 
 constexpr double two_pi = 2 * std::numbers::pi;
@@ -265,7 +268,7 @@ void sample(const Dem& dem, const SplineOptions& options, const ChosenSprings& c
             const Springs& springs, SplineSolver& solver, Grid<double>& x, Filled& filled,
             const Run& run) {
   Simulation simulation(solver, springs, options.seed);
-  const auto distance = distances_to_known(dem.known);
+  const auto distance = chamfer_distances(dem.known);
   Uncertainty uncertainty{spring_scale(springs, x, dem),
                           all_whole_metres(dem) ? 1 / 12. : 0,
                           chosen.contour_step_m,
@@ -339,7 +342,7 @@ Filled solve(const Dem& dem, const Raster<float>& noise, SplineOptions options, 
     const Dem flat = detrended(dem, plane);
     x = above_plane(dem, flat, plane, run.part(0, 0.05));
     if (options.parameters == SplineParameters::automatic || options.adaptive) {
-      distance = distances_to_known(dem.known);
+      distance = chamfer_distances(dem.known);
       chosen.layout = layout_of(dem, distance);
       if (options.parameters == SplineParameters::automatic)
         chosen = choose_springs(flat, chosen.layout, distance, X,

@@ -5,7 +5,7 @@
 #include "dem/dem.h"
 #include "dem/run.h"
 
-namespace dem {
+namespace dem::spline {
 
 /// How the known cells lie.
 enum class Layout { scattered, clustered, contours };
@@ -29,9 +29,6 @@ struct ChosenSprings {
   bool as_usual = false;          ///< nothing was tried: a small window around holes
 };
 
-/// Distances (chamfer 5-7-11, in fifths of a cell, at most 65535) of all cells to the nearest known.
-Raster<std::uint16_t> distances_to_known(const Mask& known);
-
 /// Tells apart samples that lie at random, samples that leave large gaps, and contour lines.
 /// Method: mean distance of unknown cells to data, against that of random samples as dense; contours
 ///         are lines, and gaps whose rim spans at most one step of the values.
@@ -46,4 +43,4 @@ Layout layout_of(const Dem& dem, const Raster<std::uint16_t>& distance);
 ChosenSprings choose_springs(const Dem& dem, Layout layout, const Raster<std::uint16_t>& distance,
                              double X, bool errors_wanted, const Run& run);
 
-}  // namespace dem
+}  // namespace dem::spline

@@ -13,9 +13,10 @@
 #include <stdexcept>
 
 #include "numeric/parallel.h"
-#include "numeric/vectorised.h"
+#include "numeric/simd.h"
 
 namespace dem {
+using namespace numeric;
 namespace {
 
 // What is outside has NaN as height: above(NaN) is 0, so nothing flows there, nothing comes from

@@ -11,6 +11,7 @@
 #include "io/crs.h"
 
 namespace dem {
+using namespace io;
 namespace {
 
 constexpr double most_cells = 2147483647;

@@ -10,7 +10,7 @@
 
 #include "dem/io/rasters.h"
 
-namespace dem {
+namespace dem::io {
 namespace {
 
 std::vector<std::string> layer_names(GDALDatasetH dataset) {
@@ -121,4 +121,4 @@ void VectorLayer::for_each(const std::function<bool(OGRFeatureH)>& each) const {
   if (errors.any()) errors.fail(path_, "cannot be read");
 }
 
-}  // namespace dem
+}  // namespace dem::io

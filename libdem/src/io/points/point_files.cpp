@@ -16,6 +16,7 @@
 #include "io/staged_file.h"
 
 namespace dem {
+using namespace io;
 namespace {
 
 struct DestroyCrs {
@@ -120,7 +121,7 @@ bool is_text_name(const std::string& path) {
 
 }  // namespace
 
-std::string wgs84() { return crs_from_text("EPSG:4326"); }
+std::string io::wgs84() { return crs_from_text("EPSG:4326"); }
 
 std::string crs_from_text(const std::string& text) {
   const CrsPtr crs = parse_crs(text);

@@ -22,7 +22,8 @@
 #include "io/staged_file.h"
 #include "numeric/parallel.h"
 
-namespace dem {
+namespace dem::io {
+using namespace numeric;
 namespace {
 
 constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
@@ -546,4 +547,4 @@ void read_text_points(const std::string& path, const PointReadOptions& options, 
   }
 }
 
-}  // namespace dem
+}  // namespace dem::io

@@ -13,7 +13,7 @@
 #include "io/points/ogr_layers.h"
 #include "io/points/point_reading.h"
 
-namespace dem {
+namespace dem::io {
 namespace {
 
 struct Vertex {
@@ -121,4 +121,4 @@ void read_vector_points(const std::string& path, const PointReadOptions& options
   parts(points);
 }
 
-}  // namespace dem
+}  // namespace dem::io

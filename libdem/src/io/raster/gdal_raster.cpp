@@ -17,7 +17,7 @@
 #include "io/raster/tile_folder.h"
 #include "io/staged_file.h"
 
-namespace dem {
+namespace dem::io {
 namespace {
 
 constexpr int kRowsAtOnce = 256;
@@ -597,4 +597,4 @@ std::string gdal_format_of(const std::string& path) {
   return "";
 }
 
-}  // namespace dem
+}  // namespace dem::io

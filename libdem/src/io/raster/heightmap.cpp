@@ -11,7 +11,7 @@
 #include "io/raster/nodata.h"
 #include "io/staged_file.h"
 
-namespace dem {
+namespace dem::io {
 namespace {
 
 // The key under which the range of heights goes along, in Source and in the image's description.
@@ -264,4 +264,4 @@ void write_heightmap(const std::string& path, const Dem& dem, const Source& sour
     write_greys<float>(path, dem, levels, range, options, run);
 }
 
-}  // namespace dem
+}  // namespace dem::io

@@ -18,7 +18,7 @@
 #include "io/raster/cells.h"
 #include "io/raster/nodata.h"
 
-namespace dem {
+namespace dem::io {
 namespace {
 
 constexpr int kVoid = -32768;
@@ -318,4 +318,4 @@ std::vector<HgtTile> hgt_tiles(const std::string& path, Size size, const GeoRef&
   return tiles;
 }
 
-}  // namespace dem
+}  // namespace dem::io

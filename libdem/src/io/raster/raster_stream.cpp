@@ -14,6 +14,7 @@
 #include "io/raster/nodata.h"
 
 namespace dem {
+using namespace io;
 namespace {
 
 constexpr std::size_t cells_at_once = 1 << 22;

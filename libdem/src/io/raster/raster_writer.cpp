@@ -20,6 +20,7 @@
 #include "io/staged_file.h"
 
 namespace dem {
+using namespace io;
 namespace fs = std::filesystem;
 
 /// What a format does with rows that come from the north to the south.

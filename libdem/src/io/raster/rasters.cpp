@@ -14,6 +14,7 @@
 #include "io/staged_file.h"
 
 namespace dem {
+using namespace io;
 namespace {
 
 /// An empty file is told as such before any format guesses at it.

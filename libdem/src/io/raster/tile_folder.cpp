@@ -10,28 +10,13 @@
 #include "io/raster/hgt.h"
 #include "io/staged_file.h"
 
-namespace dem {
+namespace dem::io {
 namespace fs = std::filesystem;
 
 bool is_tile_folder(const std::string& path) { return path.ends_with('/'); }
 
 std::string tile_folder_of(const std::string& vrt) {
   return fs::path(vrt).replace_extension().string() + "_tiles/";
-}
-
-std::vector<std::string> tiles_in(const std::string& folder) {
-  std::error_code error;
-  std::vector<std::string> paths;
-  for (const auto& entry : fs::directory_iterator(folder, error)) {
-    const std::string name = entry.path().filename().string();
-    const std::string ext = extension(name);
-    const bool raster = is_hgt_name(name) || ext == ".tif" || ext == ".tiff";
-    if (raster && !name.starts_with(".")) paths.push_back(entry.path().string());
-  }
-  if (error) throw IoError(folder, error.message());
-  if (paths.empty()) throw IoError(folder, "is a folder that holds no .hgt and no .tif");
-  std::ranges::sort(paths);
-  return paths;
 }
 
 TileFolder::TileFolder(const std::string& path, bool overwrite)
@@ -56,6 +41,25 @@ TileFolder::TileFolder(TileFolder&& other) noexcept
 TileFolder::~TileFolder() {
   std::error_code ignored;  // not empty, or gone: then it is no longer ours
   if (made_) fs::remove(path_, ignored);
+}
+
+}  // namespace dem::io
+
+namespace dem {
+
+std::vector<std::string> tiles_in(const std::string& folder) {
+  std::error_code error;
+  std::vector<std::string> paths;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    const std::string name = entry.path().filename().string();
+    const std::string ext = io::extension(name);
+    const bool raster = io::is_hgt_name(name) || ext == ".tif" || ext == ".tiff";
+    if (raster && !name.starts_with(".")) paths.push_back(entry.path().string());
+  }
+  if (error) throw IoError(folder, error.message());
+  if (paths.empty()) throw IoError(folder, "is a folder that holds no .hgt and no .tif");
+  std::ranges::sort(paths);
+  return paths;
 }
 
 }  // namespace dem

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-namespace dem {
+namespace dem::io {
 
 /// Whether a path to write to names a folder of tiles: it ends in a slash.
 bool is_tile_folder(const std::string& path);
@@ -30,4 +30,4 @@ class TileFolder {
   bool made_ = false;
 };
 
-}  // namespace dem
+}  // namespace dem::io
