@@ -9,7 +9,8 @@ import subprocess
 import time
 import unittest
 
-from support import DEM, VOID, CliTest, asc_text, height, hgt_bytes, limit_file_size, limit_memory, main, read_hgt
+from support import (DEM, VOID, CliTest, asc_text, height, hgt_bytes, limit_file_size, limit_memory, main, read_hgt,
+                     slow)
 
 KILLS = int(os.environ.get("DEM_KILLS", "2"))
 
@@ -281,6 +282,7 @@ class Tiles(HoleTest):
 class AnySize(HoleTest):
     memory = ["--memory", "300M"]
 
+    @slow
     @unittest.skipIf("DEM_SANITIZED" in os.environ, "AddressSanitizer takes terabytes of address space")
     def test_memory_is_a_bound_that_the_system_may_enforce(self):
         self.succeeds("generate", "noise", "n.tif", "--size", "3000", "--cell", "30")
@@ -356,6 +358,7 @@ class AnySize(HoleTest):
 
 
 class Resume(HoleTest):
+    @slow
     def test_after_kill_at_any_moment_the_same_command_ends_in_the_same_bytes(self):
         self.pitted(side=500)
         command = ["fill", "a.tif", "o.tif", "--resume", "-q", "-j", "1", "--overwrite"]
