@@ -287,9 +287,9 @@ class AnySize(HoleTest):
     def test_memory_is_a_bound_that_the_system_may_enforce(self):
         self.succeeds("generate", "noise", "n.tif", "--size", "3000", "--cell", "30")
         self.succeeds("sample", "n.tif", "a.tif", "--voids", "20%")
-        self.fails(2, "fill", "a.tif", "o.tif", "--whole", preexec_fn=limit_memory(900 << 20))
+        self.fails(2, "fill", "a.tif", "o.tif", "--whole", preexec_fn=limit_memory(650 << 20))
         self.assert_files("n.tif", "a.tif")
-        self.succeeds("fill", "a.tif", "o.tif", *self.memory, preexec_fn=limit_memory(900 << 20))
+        self.succeeds("fill", "a.tif", "o.tif", *self.memory, preexec_fn=limit_memory(650 << 20))
 
     def test_part_by_part_gives_the_same_cells_as_whole(self):
         for type_, methods in (("int16", ("spline",)), ("float32", ("mcmd",)), ("int32", ("mcmd",))):
