@@ -1,5 +1,5 @@
 # Tests of the house around the code: format, layers, and that others can use what is installed.
-# They do not depend on compiler or build type, so one build runs them (label `house`).
+# They do not depend on compiler or build type, so one build runs them.
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 
 add_test(NAME house.format COMMAND ${PROJECT_SOURCE_DIR}/scripts/check_format.sh)
@@ -30,8 +30,9 @@ if(DEM_BUILD_IO AND DEM_BUILD_APPS AND NOT DEM_SANITIZE)
                    ${PROJECT_SOURCE_DIR}/docs/tutorial.md $<TARGET_FILE:dem_cli>)
   set(docs_tests house.docs house.tutorial)
 endif()
-set(house_tests ${docs_tests} house.format house.layers house.layers_check_finds_planted_violations
-    house.odr_check_finds_a_planted_violation house.consumer_without_gis)
+set(fast_tests house.format house.layers house.layers_check_finds_planted_violations)
+set(house_tests ${docs_tests} house.odr_check_finds_a_planted_violation
+    house.consumer_without_gis)
 if(DEM_BUILD_IO AND NOT DEM_SANITIZE)
   add_test(NAME house.consumer
            COMMAND ${CMAKE_COMMAND} -DBUILD=${PROJECT_BINARY_DIR}
@@ -46,4 +47,5 @@ if(DEM_BUILD_IO AND NOT DEM_SANITIZE)
     list(APPEND house_tests house.package)
   endif()
 endif()
+set_tests_properties(${fast_tests} PROPERTIES LABELS fast)
 set_tests_properties(${house_tests} PROPERTIES LABELS house TIMEOUT 600)

@@ -3,7 +3,7 @@
 
 import json
 
-from support import CliTest, main
+from support import CliTest, main, slow
 
 
 class Generate(CliTest):
@@ -13,6 +13,7 @@ class Generate(CliTest):
     def table(self):
         return json.loads(self.succeeds("methods", "--json").stdout)["generators"]
 
+    @slow
     def test_every_generator_and_preset_makes_a_dem_without_holes(self):
         for row in self.table():
             if row["image"]:

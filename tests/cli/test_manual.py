@@ -8,7 +8,7 @@ import shutil
 import subprocess
 import unittest
 
-from support import DEM, CliTest, main
+from support import DEM, CliTest, main, slow
 
 
 def needs(program):
@@ -69,6 +69,7 @@ class Verbs(CliTest):
             self.assertIn(f"# dem {name}\n", output("manual", name, "--format", "markdown"))
         self.assertIn("dem\\-fill (1)", output("manual"))
 
+    @slow
     @needs("man")
     def test_man_reads_the_pages_without_complaint(self):
         pages = [self.write(f"{name or 'dem'}.1", output("manual", *filter(None, [name])))
@@ -84,6 +85,7 @@ class Verbs(CliTest):
         self.fails(1, "manual", "fill", "--format", "pdf", says=["pdf", "markdown"])
 
 
+@slow
 class Completion(CliTest):
     """What a shell offers at the end of a line."""
 

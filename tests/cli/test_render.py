@@ -3,7 +3,7 @@
 import json
 import struct
 
-from support import CliTest, asc_text, main
+from support import CliTest, asc_text, main, slow
 
 
 def png_shape(data):
@@ -28,6 +28,7 @@ class Render(CliTest):
         self.assertEqual((facts["style"], facts["width"], facts["height"]), ("view", 64, 48))
         self.assertGreaterEqual(facts["exaggeration"], 1)
 
+    @slow
     def test_options_change_the_picture_and_threads_do_not(self):
         self.hgt()
         pictures = {}

@@ -6,7 +6,7 @@ import re
 import unittest
 
 import browser
-from support import CliTest, asc_text, height, hgt_bytes, limit_file_size, main
+from support import CliTest, asc_text, height, hgt_bytes, limit_file_size, main, slow
 
 SIDE = 65
 TRUTH = "N10E010.whole.hgt"
@@ -142,6 +142,7 @@ class Refusals(ReportTest):
         self.fails(2, "evaluate", TRUTH, TRUTH, "--sigma", "zero.asc", says=["standard deviation above 0"])
 
 
+@slow
 @unittest.skipUnless(browser.executable(), "no browser: install the package chromium")
 class InABrowser(ReportTest):
     def setUp(self):

@@ -10,7 +10,7 @@ import subprocess
 import sys
 import unittest
 
-from support import DEM, CliTest, hgt_bytes
+from support import DEM, CliTest, hgt_bytes, main
 
 TILE = str(pathlib.Path(__file__).parents[2] / "testdata" / "jacksboro.tif")
 
@@ -91,4 +91,4 @@ if __name__ == "__main__":
             for case, _ in CASES:
                 print(f'    ("{case}", "{checksum(case, made, ready)}"),')
     else:
-        unittest.main()
+        main()

@@ -9,7 +9,7 @@
 #include <type_traits>
 #include <vector>
 
-namespace dem {
+namespace dem::io {
 
 template <class T>
 void put(std::string& out, const std::vector<T>& values) {
@@ -41,4 +41,4 @@ class Taker {
   std::string_view bytes_;
 };
 
-}  // namespace dem
+}  // namespace dem::io

@@ -14,6 +14,7 @@
 #include "io/fill/journal.h"
 
 namespace dem {
+using namespace io;
 namespace fs = std::filesystem;
 
 /// A raster in memory, which fill_holes fills in place.

@@ -10,7 +10,7 @@
 
 #include "dem/io/fill_job.h"
 
-namespace dem {
+namespace dem::io {
 
 std::size_t bytes_a_cell(const FillOptions& options, const FillFiles& files) {
   const std::string& name = options.method.method->name;
@@ -30,6 +30,11 @@ FillRaster raster_of(RasterReader& reader, const std::vector<Spacing>& spacing) 
             return dem;
           }};
 }
+
+}  // namespace dem::io
+
+namespace dem {
+using namespace io;
 
 std::string text_of_bytes(std::size_t bytes) {
   return bytes >= 1024 * mega ? fmt::format("{:.1f}G", double(bytes) / (1024. * mega))

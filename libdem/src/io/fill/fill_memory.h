@@ -7,7 +7,7 @@
 #include "dem/io/fill_files.h"
 #include "dem/io/raster_stream.h"
 
-namespace dem {
+namespace dem::io {
 
 constexpr std::size_t mega = std::size_t{1} << 20;
 
@@ -21,4 +21,4 @@ std::size_t bytes_a_cell(const FillOptions& options, const FillFiles& files);
 /// A raster file, box by box; `spacing`: of each row. Both must outlive it.
 FillRaster raster_of(RasterReader& reader, const std::vector<Spacing>& spacing);
 
-}  // namespace dem
+}  // namespace dem::io

@@ -13,7 +13,7 @@
 #include "dem/io/rasters.h"
 #include "io/fill/bytes.h"
 
-namespace dem {
+namespace dem::io {
 namespace {
 
 // A record: head, then `bytes` bytes. Kinds: the key of the run, a piece of a strip, a window that
@@ -237,4 +237,4 @@ void overlay(const std::vector<StripPiece>& pieces, FillLayer layer, const Box& 
   }
 }
 
-}  // namespace dem
+}  // namespace dem::io

@@ -11,7 +11,7 @@
 #include "dem/fill.h"
 #include "dem/io/fill_job.h"
 
-namespace dem {
+namespace dem::io {
 
 /// Cells of some holes in one strip of rows.
 struct StripPiece {
@@ -83,4 +83,4 @@ class Journals : public FillStore {
   std::vector<HolePatch> done_;
 };
 
-}  // namespace dem
+}  // namespace dem::io

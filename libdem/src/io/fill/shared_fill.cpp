@@ -13,6 +13,7 @@
 #include "io/fill/journal.h"
 
 namespace dem {
+using namespace io;
 namespace fs = std::filesystem;
 
 WindowRange windows_of_task(const std::vector<HoleWindow>& windows, std::size_t task,
