@@ -1,4 +1,5 @@
-# Tests of the house around the code: format, layers, and that others can use what is installed.
+# Tests of the house around the code: format, layers, lengths of lines, and that others can use what
+# is installed.
 # They do not depend on compiler or build type, so one build runs them (label `house`).
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 
@@ -7,6 +8,10 @@ add_test(NAME house.layers
          COMMAND Python3::Interpreter ${PROJECT_SOURCE_DIR}/scripts/check_layers.py)
 add_test(NAME house.layers_check_finds_planted_violations
          COMMAND Python3::Interpreter ${PROJECT_SOURCE_DIR}/scripts/check_layers.py --self-test)
+add_test(NAME house.lines
+         COMMAND Python3::Interpreter ${PROJECT_SOURCE_DIR}/scripts/check_lines.py)
+add_test(NAME house.lines_check_finds_planted_lines
+         COMMAND Python3::Interpreter ${PROJECT_SOURCE_DIR}/scripts/check_lines.py --self-test)
 
 # The consumer's own folder is build/.../tests/consumer*, so nothing outside the build is touched.
 add_test(NAME house.consumer_without_gis
@@ -24,7 +29,7 @@ if(DEM_BUILD_IO AND DEM_BUILD_APPS AND NOT DEM_SANITIZE)
   set(docs_tests house.docs house.tutorial)
 endif()
 set(house_tests ${docs_tests} house.format house.layers house.layers_check_finds_planted_violations
-    house.consumer_without_gis)
+    house.lines house.lines_check_finds_planted_lines house.consumer_without_gis)
 if(DEM_BUILD_IO AND NOT DEM_SANITIZE)
   add_test(NAME house.consumer
            COMMAND ${CMAKE_COMMAND} -DBUILD=${PROJECT_BINARY_DIR}
