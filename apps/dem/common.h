@@ -69,8 +69,8 @@ void add_read_options(CLI::App& app, ReadOptions& options);
 // Marks on options, for completion, manuals and other programs (see manual/outline.h).
 inline constexpr std::string_view kTakesMark = "takes:", kChoicesMark = "choices:";
 
-/// The value is a number, crs, raster, vector, points, file or folder, or it is written: "new raster",
-/// "new vector", "new picture", "new file", "new folder".
+/// The value is a number, crs, raster, vector, points, file or folder, or it is written: "new
+/// raster", "new vector", "new picture", "new file", "new folder".
 CLI::Validator takes(std::string_view kind);
 
 /// The value is one of these names; any other is refused.

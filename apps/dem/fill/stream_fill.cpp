@@ -240,8 +240,8 @@ FilledPart StreamFill::read(const Box& box) {
   return part;
 }
 
-/// Its own journal, a hidden file beside the output: ".out.tif.journal", or ".out.tif.journal.2of8" of
-/// a task. Without --resume it lives as long as it is open.
+/// Its own journal, a hidden file beside the output: ".out.tif.journal", or ".out.tif.journal.2of8"
+/// of a task. Without --resume it lives as long as it is open.
 void StreamFill::open_journals() {
   fs::path out(options_.out);
   if (!out.has_filename()) out = out.parent_path();  // a folder, "tiles/"

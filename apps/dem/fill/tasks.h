@@ -1,6 +1,6 @@
 #pragma once
-// Filling a raster by many: windows are dealt out to tasks, tasks leave what they filled in journals,
-// and whoever writes a part of the output looks into these.
+// Filling a raster by many: windows are dealt out to tasks, tasks leave what they filled in
+// journals, and whoever writes a part of the output looks into these.
 
 #include <cstddef>
 #include <string>
@@ -14,8 +14,8 @@
 
 namespace dem::app {
 
-/// Windows [first, second) of task `task` (from 0) of `tasks`: neighbours, with about as many cells as
-/// every other task's.
+/// Windows [first, second) of task `task` (from 0) of `tasks`: neighbours, with about as many cells
+/// as every other task's.
 std::pair<std::size_t, std::size_t> windows_of_task(const std::vector<HoleWindow>& windows,
                                                     std::size_t task, std::size_t tasks);
 
@@ -66,8 +66,8 @@ class SharedRaster {
   BundleOutcome fill(const Bundle& bundle, const std::string& path, const std::string& key,
                      const Run& run);
 
-  /// Step 4, of every tile: writes the box of the filled raster, as a file like `tile`. The journals
-  /// are those that have cells in it. Returns how many cells are still unknown.
+  /// Step 4, of every tile: writes the box of the filled raster, as a file like `tile`. The
+  /// journals are those that have cells in it. Returns how many cells are still unknown.
   std::size_t write_tile(const std::string& tile, const Box& box,
                          const std::vector<std::string>& journals, const std::string& key,
                          const std::string& out, const WriteOptions& options, const Run& run);
