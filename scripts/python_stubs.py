@@ -33,8 +33,9 @@ TYPES = {
 RETURNS = {"fill": "Filled", "supersample": "Filled", "grid": "Filled", "sample": "Dem", "generate": "Dem",
            "erode": "Eroded", "evaluate": "Scores", "render": "npt.NDArray[np.uint8]", "read": "Dem", "write": "None"}
 PROPERTIES = {"z": "npt.NDArray[np.float32]", "known": "npt.NDArray[np.bool_]",
-              "elevation": "npt.NDArray[np.floating[Any]]", "shape": "tuple[int, int]", "spacing": "tuple[float, float]",
-              "to_world": "list[float]", "crs": "str", "dtype": "str", "nodata": "float | None"}
+              "elevation": "npt.NDArray[np.floating[Any]]", "shape": "tuple[int, int]",
+              "spacing": "tuple[float, float]", "to_world": "list[float]", "crs": "str", "dtype": "str",
+              "nodata": "float | None"}
 KINDS = {"number": "float", "integer": "int", "boolean": "bool"}
 
 HEAD = '''\
@@ -101,7 +102,8 @@ def overloads(name, parameter_name, rows, default):
     """The default's signature comes first: only it may leave the parameter out. The last one is for names
     that are not known before the program runs."""
     rows = sorted(rows, key=lambda row: row[1] != default)
-    any_name = function(name, (parameter_name, "str", False), (), "@overload\n").replace(") ->", ", **settings: Any) ->")
+    any_name = function(name, (parameter_name, "str", False), (), "@overload\n")
+    any_name = any_name.replace(") ->", ", **settings: Any) ->")
     return "".join(function(name, (parameter_name, text, row_name == default), fields, "@overload\n")
                    for text, row_name, fields in rows) + any_name
 
@@ -123,8 +125,9 @@ def stubs():
     out = [HEAD, "class CellOrigin(enum.IntEnum):"]
     out += [f"    {origin.name} = {origin.value}" for origin in libdem.CellOrigin]
     out += of_class(libdem.Dem)
-    out.append("    def __init__(self, z: npt.ArrayLike, known: npt.ArrayLike | None = None, nodata: float | None = None, "
-               "spacing: tuple[float, float] | None = None, to_world: Sequence[float] | None = None, crs: str = '') -> None: ...")
+    out.append("    def __init__(self, z: npt.ArrayLike, known: npt.ArrayLike | None = None, "
+               "nodata: float | None = None, spacing: tuple[float, float] | None = None, "
+               "to_world: Sequence[float] | None = None, crs: str = '') -> None: ...")
     for cls in libdem.Filled, libdem.Eroded, libdem.Field, libdem.Preset, libdem.Method:
         out += ["@dataclasses.dataclass(frozen=True)"] + of_class(cls)
         annotations = {"dem": "Dem", "report": "dict[str, Any]", "fields": "tuple[Field, ...]",

@@ -7,6 +7,10 @@ add_test(NAME house.layers
          COMMAND Python3::Interpreter ${PROJECT_SOURCE_DIR}/scripts/check_layers.py)
 add_test(NAME house.layers_check_finds_planted_violations
          COMMAND Python3::Interpreter ${PROJECT_SOURCE_DIR}/scripts/check_layers.py --self-test)
+add_test(NAME house.lines
+         COMMAND Python3::Interpreter ${PROJECT_SOURCE_DIR}/scripts/check_lines.py)
+add_test(NAME house.lines_check_finds_planted_lines
+         COMMAND Python3::Interpreter ${PROJECT_SOURCE_DIR}/scripts/check_lines.py --self-test)
 
 # The objects stay in build/.../odr, so that a second run compiles only what has changed.
 add_test(NAME house.odr
@@ -30,7 +34,8 @@ if(DEM_BUILD_IO AND DEM_BUILD_APPS AND NOT DEM_SANITIZE)
                    ${PROJECT_SOURCE_DIR}/docs/tutorial.md $<TARGET_FILE:dem_cli>)
   set(docs_tests house.docs house.tutorial)
 endif()
-set(fast_tests house.format house.layers house.layers_check_finds_planted_violations)
+set(fast_tests house.format house.layers house.layers_check_finds_planted_violations house.lines
+    house.lines_check_finds_planted_lines)
 set(house_tests ${docs_tests} house.odr_check_finds_a_planted_violation
     house.consumer_without_gis)
 if(DEM_BUILD_IO AND NOT DEM_SANITIZE)

@@ -69,8 +69,8 @@ void add_read_options(CLI::App& app, ReadOptions& options);
 // Marks on options, for completion, manuals and other programs (see manual/outline.h).
 inline constexpr std::string_view kTakesMark = "takes:", kChoicesMark = "choices:";
 
-/// The value is a number, crs, raster, vector, points, file or folder, or it is written: "new raster",
-/// "new vector", "new picture", "new file", "new folder".
+/// The value is a number, crs, raster, vector, points, file or folder, or it is written: "new
+/// raster", "new vector", "new picture", "new file", "new folder".
 CLI::Validator takes(std::string_view kind);
 
 /// The value is one of these names; any other is refused.
@@ -99,7 +99,8 @@ double parse_share(std::string_view option, const std::string& text);
 /// Throws std::invalid_argument `option = text; must be ...`.
 double parse_number(std::string_view option, const std::string& text, std::string_view must_be);
 
-/// The option of the command line that sets a field of the library: "max_area_km2" -> "--max-area-km2".
+/// The option of the command line that sets a field of the library: "max_area_km2" ->
+/// "--max-area-km2".
 std::string option_of(std::string_view field);
 
 /// 1050625 -> "1 050 625".

@@ -143,7 +143,8 @@ double spacing_along_lines(const Options& o, const Lattice& lattice, const Exten
   return spacing;
 }
 
-/// Contour lines on a lattice: each cell that a line passes has its level, and a height at its centre.
+/// Contour lines on a lattice: each cell that a line passes has its level, and a height at its
+/// centre.
 Read read_contours(const Options& o, const Run& run) {
   Read read;
   PointReadOptions options = o.read;

@@ -126,7 +126,8 @@ int render(const Options& o, Shell& shell) {
   return kDone;
 }
 
-/// An option for each field: --name VALUE; a switch that is off is --name, one that is on --no-name.
+/// An option for each field: --name VALUE; a switch that is off is --name, one that is on
+/// --no-name.
 void add_field_options(CLI::App& app, const std::shared_ptr<Options>& o) {
   ReliefOptions relief;
   ViewOptions view;

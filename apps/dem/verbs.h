@@ -1,5 +1,6 @@
 #pragma once
-// One function per verb, in a file of its own or with its kin: it adds the verb to the command line.
+// One function per verb, in a file of its own or with its kin: it adds the verb to the command
+// line.
 
 #include "common.h"
 

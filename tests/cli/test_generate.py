@@ -20,7 +20,8 @@ class Generate(CliTest):
                 continue
             for name in [row["name"]] + [f"{row['name']}:{p['name']}" for p in row["presets"]]:
                 with self.subTest(name):
-                    self.succeeds("generate", name, "x.tif", "--size", "40x20", *([] if row["globe"] else ["--cell", "300"]), "--overwrite")
+                    cell = [] if row["globe"] else ["--cell", "300"]
+                    self.succeeds("generate", name, "x.tif", "--size", "40x20", *cell, "--overwrite")
                     facts = self.facts("x.tif")
                     self.assertEqual((facts["cols"], facts["rows"], facts["unknown_cells"]), (40, 20, 0))
                     self.assertLess(facts["low_m"], facts["high_m"])

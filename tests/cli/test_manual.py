@@ -99,9 +99,10 @@ class Completion(CliTest):
 
     def fish(self, line):
         script = self.write("dem.fish", output("completion", "fish"))
+        path = f"{os.path.dirname(DEM)}:{os.environ['PATH']}"
         done = subprocess.run(["fish", "--no-config", "-c", f"source {script}; complete -C '{line}'"], cwd=self.dir,
                               capture_output=True, text=True, timeout=60,
-                              env={**os.environ, "HOME": self.dir, "PATH": f"{os.path.dirname(DEM)}:{os.environ['PATH']}"})
+                              env={**os.environ, "HOME": self.dir, "PATH": path})
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         return [entry.split("\t")[0] for entry in done.stdout.splitlines()]
 

@@ -85,7 +85,8 @@ class Render(CliTest):
         for point in ("1,2", "a,b,c", "1,2,3,4"):
             self.fails(1, "render", "N10E010.hgt", "v.png", "--style", "view", "--camera", point,
                        says=["camera = ", "must be X,Y,Z"])
-        self.fails(1, "render", "N10E010.hgt", "v.png", "--style", "view", "--target", "10.5,10.5,9", says=["target without"])
+        self.fails(1, "render", "N10E010.hgt", "v.png", "--style", "view", "--target", "10.5,10.5,9",
+                   says=["target without"])
 
     def test_files_that_cannot_be_read_or_written_are_told(self):
         self.hgt()

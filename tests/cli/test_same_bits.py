@@ -46,7 +46,8 @@ def inputs(folder):
     """The files that the commands of CASES begin with."""
     files = {name: os.path.join(folder, name + ".tif") for name in ("holes", "sparse", "lines")}
     files["tile"] = TILE
-    for name, words in {"holes": ("--voids", "5%"), "sparse": ("--keep", "3.4%"), "lines": ("--contours", "20")}.items():
+    samples = {"holes": ("--voids", "5%"), "sparse": ("--keep", "3.4%"), "lines": ("--contours", "20")}
+    for name, words in samples.items():
         done = dem("sample", TILE, files[name], *words, "--seed", "1")
         assert done.returncode == 0, done.stderr
     files["points"] = os.path.join(folder, "points.csv")

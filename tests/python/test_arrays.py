@@ -38,8 +38,8 @@ def test_known_cells_come_back_and_no_hole_is_left(case, method):
     filled = libdem.fill(z, known, method=method)
     assert np.array_equal(z, before)
     assert filled.elevation.shape == z.shape
-    assert filled.elevation.dtype == (np.float64 if z.dtype.itemsize > 2 and z.dtype.kind != "f" or z.dtype == np.float64
-                                      else np.float32)
+    wide = z.dtype.itemsize > 2 and z.dtype.kind != "f" or z.dtype == np.float64
+    assert filled.elevation.dtype == (np.float64 if wide else np.float32)
     assert np.array_equal(filled.elevation[known], z[known])
     assert np.isfinite(filled.elevation).all()
     assert np.array_equal(filled.source == libdem.CellOrigin.measured, known)

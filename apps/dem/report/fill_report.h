@@ -8,8 +8,8 @@
 
 namespace dem::app {
 
-/// Pictures, sizes of voids, the largest ones; sigma where there is some; the spectrum of a raster in
-/// memory that has no voids left.
+/// Pictures, sizes of voids, the largest ones; sigma where there is some; the spectrum of a raster
+/// in memory that has no voids left.
 Json fill_sections(FillJob& job, const std::string& method, const Run& run);
 
 /// Title, outcome and settings, to be completed with sections and files.

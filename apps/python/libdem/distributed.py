@@ -326,8 +326,8 @@ def _gather(futures, report, first, last, what):
         if future.status == "error":
             error = future.exception()
             if isinstance(error, KilledWorker):
-                raise RuntimeError(f"{what}: workers died again and again at {future.key}; what is done is kept, the same "
-                                   "call goes on from there (fewer threads per worker need less memory)") from None
+                raise RuntimeError(f"{what}: workers died again and again at {future.key}; what is done is kept, the "
+                                   "same call goes on from there (fewer threads per worker need less memory)") from None
             raise error
         if report:
             report(first + (last - first) * n / len(futures), what)

@@ -78,7 +78,8 @@ class BoxIndex {
   std::unordered_map<std::uint64_t, std::vector<std::size_t>> squares_;
 };
 
-/// Bundles as (bytes, cells of windows, numbers of the tiles that they fill), and the plan in numbers.
+/// Bundles as (bytes, cells of windows, numbers of the tiles that they fill), and the plan in
+/// numbers.
 py::tuple plan(const SharedFill& raster, const std::vector<std::string>& parts,
                const std::vector<Four>& tiles, std::size_t bundle_cells,
                const py::object& progress) {

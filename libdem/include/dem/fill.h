@@ -4,8 +4,8 @@
 //   dem::DemFile file = dem::read_dem("N36E008.hgt");
 //   dem::HoleFill filled = dem::fill_holes(file.dem);
 //
-// A void is filled in a window of its own: its surroundings decide, not the rest of the raster. Above a
-// quarter of unknown cells the known ones are samples, and the whole raster is one window.
+// A void is filled in a window of its own: its surroundings decide, not the rest of the raster.
+// Above a quarter of unknown cells the known ones are samples, and the whole raster is one window.
 
 #include <cstddef>
 #include <cstdint>
@@ -32,7 +32,8 @@ struct FillOptions {
 
 /// The options with the default method and the setting for sigma put in; `sigma` then says whether
 /// the method gives a standard error.
-/// Throws std::invalid_argument for a bad setting, a bad condition, or a sigma that the method lacks.
+/// Throws std::invalid_argument for a bad setting, a bad condition, or a sigma that the method
+/// lacks.
 FillOptions checked(FillOptions options);
 
 /// An auxiliary DEM. `read` gives its heights on the cells of a box, unknown where it has none.

@@ -175,9 +175,9 @@ struct HoleWork {
 
 /// Fills the holes window by window: small windows side by side, large ones one after another on
 /// all threads. `read` and `take` are called from the calling thread only.
-/// Guides:  the method fills z - guide instead of z (a delta surface), and the guide is added again:
-///          no step at the rim, no bias. Each hole takes the guide, or none, that finds hidden rim
-///          cells best; a guide that does not cover the hole is not asked.
+/// Guides:  the method fills z - guide instead of z (a delta surface), and the guide is added
+///          again: no step at the rim, no bias. Each hole takes the guide, or none, that finds
+///          hidden rim cells best; a guide that does not cover the hole is not asked.
 /// Water:   cells of water in a hole lie flat, at a tenth of the known heights beside them (the
 ///          lowest rim of the hole where none is); their shore stays above.
 /// Throws:  what the three throw, Cancelled.

@@ -227,8 +227,8 @@ bool are_contour_lines(const Dem& dem, const std::vector<Area>& areas) {
   return between >= least_between * (cells - known);
 }
 
-/// How far a flank of this slope (metres a cell) rises at distance d beyond its line, when it rounds
-/// off to level ground at distance `widest`: a parabola, cut at `most`. Distances in fifths.
+/// How far a flank of this slope (metres a cell) rises at distance d beyond its line, when it
+/// rounds off to level ground at distance `widest`: a parabola, cut at `most`. Distances in fifths.
 double rounded_rise(double slope, int d, int widest, double most) {
   const double x = d / 5., w = std::max(1., widest / 5.);
   const double rise = slope * (x - x * x / (2 * w)), top = slope * w / 2;

@@ -1,6 +1,6 @@
-// Holes of a raster from its parts. A hole that reaches several parts is scanned anew, from its cells
-// and its rim alone, by the scanner that would have found it in the whole raster: the same sums in
-// the same order.
+// Holes of a raster from its parts. A hole that reaches several parts is scanned anew, from its
+// cells and its rim alone, by the scanner that would have found it in the whole raster: the same
+// sums in the same order.
 
 #include "dem/hole_parts.h"
 

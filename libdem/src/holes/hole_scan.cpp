@@ -17,8 +17,8 @@ namespace {
 constexpr double infinite = Envelope::infinite;
 constexpr std::size_t most_distance_cells = std::size_t{1} << 24;
 
-/// The greatest distance of a hole's cells to a cell outside it, within the raster. The cell nearest
-/// outside is known: any other would belong to the hole.
+/// The greatest distance of a hole's cells to a cell outside it, within the raster. The cell
+/// nearest outside is known: any other would belong to the hole.
 /// Boxes above the limit are looked at in squares of k x k cells, outside where one cell is.
 double greatest_distance(const std::vector<CellRun>& runs, const Box& box, int raster_cols,
                          int raster_rows, Spacing spacing) {

@@ -39,8 +39,8 @@ void account(const HolePatch& patch, const FillPlan& plan, FillReport& report) {
   if (plan.windows.size() == 1) report.figures = patch.report;
 }
 
-/// Heights go straight to their place in a DEM. Others still look at its mask, so that is changed in
-/// the end only.
+/// Heights go straight to their place in a DEM. Others still look at its mask, so that is changed
+/// in the end only.
 class DemStore : public FillStore {
  public:
   DemStore(HoleFill& out, bool sigma) : out_(out) {

@@ -7,8 +7,8 @@
 
 namespace dem::methods {
 
-/// Sums over known cells of many windows: of d = z - guide on the slopes of z. A shift (u, v) of the
-/// guide shows as d = c + u zx + v zy.
+/// Sums over known cells of many windows: of d = z - guide on the slopes of z. A shift (u, v) of
+/// the guide shows as d = c + u zx + v zy.
 class GuideSums {
  public:
   void add(const Dem& dem, const Dem& guide);

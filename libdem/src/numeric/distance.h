@@ -54,7 +54,8 @@ class Envelope {
   std::vector<double> from_, out_;
 };
 
-/// Distances (chamfer 5-7-11, in fifths of a cell, at most 65535) of all cells to the nearest known.
+/// Distances (chamfer 5-7-11, in fifths of a cell, at most 65535) of all cells to the nearest
+/// known.
 inline Raster<std::uint16_t> chamfer_distances(const Mask& known) {
   constexpr int far = 65535;
   const Size size = known.size();

@@ -214,7 +214,8 @@ std::size_t reject_outliers(Dem& dem, double times, const Run& run) {
   return rejected;
 }
 
-/// The cells of a window, whose first is `from`, that breaks part from a cell; empty when none is broken.
+/// The cells of a window, whose first is `from`, that breaks part from a cell; empty when none is
+/// broken.
 Mask cells_beyond(const Mask& breaks, Cell cell, Cell from, Size size) {
   if (!is_broken(breaks, from.col, from.row, size.cols, size.rows)) return {};
   Mask known(size), within(size);

@@ -229,7 +229,8 @@ void interpolate_broken(const Level& fine, Halving half, int y, const Grid<float
   }
 }
 
-/// Coarse rows [Y0, Y1) of the transposed interpolation of the fine rows that fine_row(y, row) makes.
+/// Coarse rows [Y0, Y1) of the transposed interpolation of the fine rows that fine_row(y, row)
+/// makes.
 template <class FineRow>
 void restrict_broken(const Level& level, Halving half, int Y0, int Y1, Grid<float>& coarse,
                      const FineRow& fine_row) {

@@ -45,10 +45,10 @@ void for_known(const Dem& dem, const Each& each) {
   }
 }
 
-/// The plane that the membrane pulls to: the least-squares plane of the known cells as far as they are
-/// one. Its slopes shrink with R^2, the part of the variance that it explains, from whole at 1 to
-/// none at 0.5: else a mountain on one side of a basin would tilt the basin. Cells on a line leave
-/// the slope across it open: 0.
+/// The plane that the membrane pulls to: the least-squares plane of the known cells as far as they
+/// are one. Its slopes shrink with R^2, the part of the variance that it explains, from whole at 1
+/// to none at 0.5: else a mountain on one side of a basin would tilt the basin. Cells on a line
+/// leave the slope across it open: 0.
 Plane fit_plane(const Dem& dem) {
   double n = 0, x_sum = 0, y_sum = 0, z_sum = 0;
   for_known(dem, [&](int x, int y, double z) {
@@ -315,8 +315,8 @@ void sample(const Dem& dem, const SplineOptions& options, const ChosenSprings& c
   }
 }
 
-/// Shortens L1 while the springs shoot over the gaps. Hidden cells cannot tell: where only the steep
-/// cells are known, those beside the gaps are steep too, and the gaps are flat.
+/// Shortens L1 while the springs shoot over the gaps. Hidden cells cannot tell: where only the
+/// steep cells are known, those beside the gaps are steep too, and the gaps are flat.
 void soften_overshooting(SplineOptions& options, const Dem& dem, const Raster<float>& noise,
                          double X, const Grid<double>& start, const Raster<std::uint16_t>& distance,
                          const Run& run) {

@@ -30,16 +30,18 @@ struct ChosenSprings {
 };
 
 /// Tells apart samples that lie at random, samples that leave large gaps, and contour lines.
-/// Method: mean distance of unknown cells to data, against that of random samples as dense; contours
+/// Method: mean distance of unknown cells to data, against that of random samples as dense;
+/// contours
 ///         are lines, and gaps whose rim spans at most one step of the values.
 Layout layout_of(const Dem& dem, const Raster<std::uint16_t>& distance);
 
 /// Chooses the springs. `dem`: heights above their plane, 0 where unknown. X = (dy / dx)^2.
-/// Method: scattered: a tenth (sparse ones: a fifth) of the known cells hidden in one window of each
+/// Method: scattered: a tenth (sparse ones: a fifth) of the known cells hidden in one window of
+/// each
 ///         quadrant. Clustered: disks as wide as the gaps, cut beside them, each in a window of its
-///         own; the mean of the logarithms of their errors. Both with a small charge for leaving the
-///         usual springs. Fewer than 2^15 cells of which three fifths are known, as around a hole,
-///         take the usual springs; their hidden cells are looked at when `errors_wanted`.
+///         own; the mean of the logarithms of their errors. Both with a small charge for leaving
+///         the usual springs. Fewer than 2^15 cells of which three fifths are known, as around a
+///         hole, take the usual springs; their hidden cells are looked at when `errors_wanted`.
 ChosenSprings choose_springs(const Dem& dem, Layout layout, const Raster<std::uint16_t>& distance,
                              double X, bool errors_wanted, const Run& run);
 

@@ -13,8 +13,8 @@
 
 namespace dem::synthesis {
 
-/// Cells by key, lowest first, equal keys by index. Keys between `low` and `high` cost O(1), as long
-/// as none is pushed that is lower than the last one popped: only the bucket in use is sorted.
+/// Cells by key, lowest first, equal keys by index. Keys between `low` and `high` cost O(1), as
+/// long as none is pushed that is lower than the last one popped: only the bucket in use is sorted.
 class CellQueue {
  public:
   struct Item {

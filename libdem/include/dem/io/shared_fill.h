@@ -1,6 +1,6 @@
 #pragma once
-// A raster that many processes fill: each looks at parts, fills bundles of windows into journals, and
-// writes tiles from these. Any scheduler can hand out the steps.
+// A raster that many processes fill: each looks at parts, fills bundles of windows into journals,
+// and writes tiles from these. Any scheduler can hand out the steps.
 
 #include <cstddef>
 #include <string>
@@ -15,8 +15,8 @@
 
 namespace dem {
 
-/// The share of one of `tasks` tasks (from 0): neighbouring windows, with about as many cells as every
-/// other task's.
+/// The share of one of `tasks` tasks (from 0): neighbouring windows, with about as many cells as
+/// every other task's.
 WindowRange windows_of_task(const std::vector<HoleWindow>& windows, std::size_t task,
                             std::size_t tasks);
 
@@ -53,8 +53,8 @@ class SharedFill {
   FillReport fill(const FillPlan& bundle, const std::string& path, const std::string& key,
                   const Run& run);
 
-  /// Step 4, of every tile: writes the box of the filled raster, as a file like `tile`. The journals
-  /// are those that have cells in it. Returns the number of cells that are still unknown.
+  /// Step 4, of every tile: writes the box of the filled raster, as a file like `tile`. The
+  /// journals are those that have cells in it. Returns the number of cells that are still unknown.
   std::size_t write_tile(const std::string& tile, const Box& box,
                          const std::vector<std::string>& journals, const std::string& key,
                          const std::string& out, const WriteOptions& options, const Run& run);

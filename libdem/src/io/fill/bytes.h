@@ -1,5 +1,6 @@
 #pragma once
-// Vectors of plain values as bytes, in the order of this machine: they do not travel to other kinds.
+// Vectors of plain values as bytes, in the order of this machine: they do not travel to other
+// kinds.
 
 #include <cstdint>
 #include <cstring>

@@ -162,8 +162,8 @@ void FillJob::Streamed::leave_out_large(const Options& options, std::size_t memo
   });
 }
 
-/// Its own journal, a hidden file beside the output: ".out.tif.journal", or ".out.tif.journal.2of8" of
-/// a task. Without `resume` it lives as long as it is open.
+/// Its own journal, a hidden file beside the output: ".out.tif.journal", or ".out.tif.journal.2of8"
+/// of a task. Without `resume` it lives as long as it is open.
 void FillJob::Streamed::open_journals(const Options& options, const std::string& in) {
   fs::path out(options.out);
   if (!out.has_filename()) out = out.parent_path();  // a folder, "tiles/"

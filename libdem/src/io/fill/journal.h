@@ -1,6 +1,6 @@
 #pragma once
-// Filled holes on disk, until the raster is written: cut by strips of rows, so that writing needs one
-// strip at a time, and closed window by window, so that a run can go on after any stop.
+// Filled holes on disk, until the raster is written: cut by strips of rows, so that writing needs
+// one strip at a time, and closed window by window, so that a run can go on after any stop.
 
 #include <cstdint>
 #include <cstdio>

@@ -151,6 +151,6 @@ class OiioModule final : public ImageModule {
 /// What image_module() asks for. The name changes with the interface.
 extern "C" __attribute__((visibility("default"))) const dem::io::ImageModule*
 DEM_IMAGE_MODULE_SYMBOL() {
-  static const dem::OiioModule module;
+  static const dem::io::OiioModule module;
   return &module;
 }
