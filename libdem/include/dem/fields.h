@@ -110,6 +110,15 @@ using Settings = std::vector<std::pair<std::string, std::string>>;
 /// Sets each named field. Throws std::invalid_argument for a name that is not among them.
 void apply(const Settings& settings, std::vector<Field> fields);
 
+/// The field called `name`. Throws std::invalid_argument when there is none.
+Field find_field(std::vector<Field> fields, std::string_view name);
+
+/// The field of an Options object that is called `name`.
+template <class Options>
+Field field(Options& options, std::string_view name) {
+  return find_field(fields(options), name);
+}
+
 /// Checks every field.
 void check(const std::vector<Field>& fields);
 

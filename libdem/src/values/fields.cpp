@@ -196,17 +196,17 @@ void Field::check() const {
   if (!access_.good()) refuse(text());
 }
 
+Field find_field(std::vector<Field> fields, std::string_view name) {
+  const auto found = std::ranges::find(fields, name, &Field::name);
+  if (found != fields.end()) return std::move(*found);
+  std::vector<std::string> names;
+  for (const auto& f : fields) names.push_back(f.name());
+  throw std::invalid_argument(
+      fmt::format("unknown setting \"{}\"; must be one of {}", name, join(names, ", ")));
+}
+
 void apply(const Settings& settings, std::vector<Field> fields) {
-  for (const auto& [name, text] : settings) {
-    const auto field = std::ranges::find(fields, name, &Field::name);
-    if (field == fields.end()) {
-      std::vector<std::string> names;
-      for (const auto& f : fields) names.push_back(f.name());
-      throw std::invalid_argument(
-          fmt::format("unknown setting \"{}\"; must be one of {}", name, join(names, ", ")));
-    }
-    field->set(text);
-  }
+  for (const auto& [name, text] : settings) find_field(fields, name).set(text);
 }
 
 void check(const std::vector<Field>& fields) {
