@@ -43,7 +43,7 @@ ContourBounds contour_bounds(const Dem& dem, const ContourOptions& options = {},
 ///           Cells of lines pull the surface with a nugget, as they lie up to half a cell off their
 ///           line.
 /// Gives:    known cells bit for bit; all others within their bounds. Known cells that are no
-///           contour lines: the spline. The report has contour_lines (1 or 0), cells_held and cells_clamped.
+///           contour lines: the spline, and Filled::contour_lines is false.
 /// Cost:     that of 1 + rounds splines.
 /// Throws:   std::invalid_argument, Cancelled.
 Filled fill_contours(const Dem& dem, const ContourOptions& options = {}, const Run& run = {});
@@ -52,8 +52,5 @@ Filled fill_contours(const Dem& dem, const ContourOptions& options = {}, const R
 /// `at_centres`, of the size of the DEM. These heights come back; the levels of `lines` give bounds.
 Filled fill_contours(const Dem& lines, const Raster<float>& at_centres,
                      const ContourOptions& options, const Run& run = {});
-
-/// Whether the report of fill_contours says that the known cells were contour lines.
-bool on_contour_lines(const std::vector<Figure>& report);
 
 }  // namespace dem

@@ -63,6 +63,7 @@ struct Filled {
   Raster<float>
       sigma{};  ///< standard deviation in metres, 0 at known cells; empty when not asked for
   std::vector<Figure> report{};
+  bool contour_lines = false;  ///< fill_contours: the known cells were contour lines
 };
 
 /// Throws std::invalid_argument unless z, known and breaks (when there are any) have the same size, of

@@ -13,6 +13,7 @@ struct GreedyOptions {
   std::size_t count = 0;   ///< keep exactly so many cells; 0: as many as max_error_m needs
   double max_error_m = 0;  ///< stop when no known cell is missed by more; 0: count alone
 };
+std::vector<Field> fields(GreedyOptions& options);
 
 /// How far the reconstruction from so many cells is off, over all known cells.
 struct GreedyRound {

@@ -13,12 +13,13 @@ enum class Preserve {
 };
 
 struct SupersampleOptions {
-  double factor = 2;  ///< so many fine cells to a coarse one, along either axis; above 1
+  double factor = 2;  ///< how many times finer, along either axis; above 1
   Preserve preserve = Preserve::heights;
   /// Nodes: the outer fine cells have the centres of the outer coarse ones. Else both lattices have
   /// the same outer edges.
   bool nodes = false;
 };
+std::vector<Field> fields(SupersampleOptions& options);
 
 /// The finer lattice. Its cells are as near to 1 / factor of the coarse ones as whole numbers of
 /// columns and rows allow.

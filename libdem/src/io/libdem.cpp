@@ -117,12 +117,6 @@ dem::ChosenMethod choose(const char* name) {
   return dem::find_method(dem::all_fill_methods(), name ? name : dem::default_fill_method());
 }
 
-/// Throws when a setting is refused: one known cell costs nothing to fill.
-void try_out(const dem::ChosenMethod& chosen) {
-  const dem::Dem one{dem::Raster<float>({1, 1}), dem::Mask({1, 1}, 1), {}, {}};
-  chosen.method->fill(one, chosen.settings, {});
-}
-
 dem::Run run_of(const libdem_run* run) {
   if (!run) return {};
   if (run->threads < 0)
@@ -238,7 +232,7 @@ libdem_status libdem_set(libdem_method* method, const char* name, const char* va
   return guarded(error, [&] {
     dem::ChosenMethod changed = given(method, "method").chosen;
     changed.settings.emplace_back(&given(name, "name"), &given(value, "value"));
-    try_out(changed);
+    changed.check();
     method->chosen = std::move(changed);
   });
 }

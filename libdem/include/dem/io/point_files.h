@@ -33,6 +33,8 @@ struct PointReadOptions {
   /// as being in it.
   std::string to_crs{};
 };
+/// All but `delimiter` and `classes`.
+std::vector<Field> fields(PointReadOptions& options);
 
 /// What a file of points was found to be.
 struct PointSource {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "dem/dem.h"
+#include "dem/fields.h"
 #include "dem/run.h"
 
 namespace dem {
@@ -63,6 +64,8 @@ struct ReadOptions {
   /// Grey of an image that means unknown, 0 (black) to 1 (white).
   std::optional<double> unknown_grey{};
 };
+/// All but `heights`.
+std::vector<Field> fields(ReadOptions& options);
 
 struct DemFile {
   Dem dem;
@@ -98,6 +101,11 @@ struct WriteOptions {
   /// The cells are kinds, not heights: a colour table, and CLASS_1=NAME in the metadata.
   std::vector<CellClass> classes{};
 };
+/// All but `heights`, `metadata` and `classes`.
+std::vector<Field> fields(WriteOptions& options);
+
+/// The names of the cell types, in their order: "int8", "uint8", ...
+const std::vector<std::string>& cell_type_names();
 
 /// Writes a DEM so that the path holds either what it held before or the whole new file: it is
 /// written beside and renamed. Unknown cells get the no-data value, which is always declared.

@@ -332,7 +332,10 @@ std::unique_ptr<RasterWriter::File> open_file(const std::string& path, Size size
 
 RasterWriter::RasterWriter(const std::string& path, Size size, const GeoRef& ref,
                            const Source& source, const WriteOptions& options, const Run& run)
-    : size_(size), file_(open_file(path, size, ref, source, options, run)) {}
+    : size_(size) {
+  check_options(options);
+  file_ = open_file(path, size, ref, source, options, run);
+}
 RasterWriter::~RasterWriter() = default;
 
 void RasterWriter::write(const Dem& rows, const Raster<double>& exact) {
