@@ -81,6 +81,7 @@ void account(const HolePatch& patch, const FillPlan& plan, FillOutcome& outcome)
     outcome.guide_cells += hole.guide_cells;
   }
   if (plan.windows.size() == 1) outcome.figures = patch.report;
+  outcome.contour_lines = outcome.contour_lines || patch.contour_lines;
 }
 
 FillOutcome fill_holes_of(Dem& dem, const FillRequest& request, const Run& run) {

@@ -48,6 +48,7 @@ struct FillOutcome {
   std::size_t memory_needed = 0;  ///< bytes for the largest window that did not fit; 0: all did
   double seconds = 0;
   std::vector<Figure> figures;       ///< of the method, when there was one window
+  bool contour_lines = false;        ///< the method found contour lines in a window
   std::vector<FillLayers::Fit> aux;  ///< of the auxiliary DEMs
   Raster<float> sigma;
   Raster<std::uint8_t> origin;

@@ -36,12 +36,8 @@ std::string journal_key(const StreamFill::Options& o) {
 }  // namespace
 
 std::size_t bytes_a_cell(const FillRequest& request) {
-  const std::string& name = request.method.method->name;
-  const std::size_t method = name == "spline"                                  ? 110
-                             : name == "mcmd" || name == "md" || name == "mdi" ? 24
-                                                                               : 64;
-  return method + (request.keep_sigma ? 30 : 0) + (request.rim_errors ? 10 : 0) +
-         request.aux.size() * 30 + (request.water.empty() ? 0 : 4);
+  return request.method.method->traits.bytes_per_cell.value + (request.keep_sigma ? 30 : 0) +
+         (request.rim_errors ? 10 : 0) + request.aux.size() * 30 + (request.water.empty() ? 0 : 4);
 }
 
 std::size_t block_cache(std::size_t memory) { return std::min(memory / 6, 256 * mega); }

@@ -213,9 +213,10 @@ def supersample(z, factor, *, known=None, preserve="heights", nodes=None, method
     Returns a Filled: its dem has the finer lattice, its report miss_rms_m and miss_max_m.
     """
     dem, _ = _as_dem(z, known, spacing, nodata, to_world, crs)
+    how = {"factor": factor, "preserve": preserve, **({} if nodes is None else {"nodes": bool(nodes)})}
     with callback(progress) as call:
         return Filled(*_with_no_source(_call.supersample(
-            dem, factor, preserve, nodes, method, _method_settings(method, settings), _threads(threads), call)))
+            dem, _tables.as_settings(how), method, _method_settings(method, settings), _threads(threads), call)))
 
 
 def grid(x, y, z, *, like=None, bounds=None, cell="", crs="", nodes=False, point_sigma=None,
@@ -242,11 +243,13 @@ def grid(x, y, z, *, like=None, bounds=None, cell="", crs="", nodes=False, point
         like, _ = _as_dem(like)
     if bounds is not None:
         bounds = _numbers("bounds", bounds, 4, "west, south, east, north")
+    binning = _tables.as_settings({"combine": combine, "plane": not snap, "outliers": reject_outliers})
+    gridding = _tables.as_settings({"passes": passes})
     cell = f"{cell}m" if isinstance(cell, (int, float)) else cell
     with callback(progress) as call:
         return Filled(*_with_no_source(_call.grid(
-            x, y, z, point_sigma, point_weight, like, bounds, cell, crs, nodes, combine,
-            reject_outliers, snap, passes, method, _method_settings(method, settings), _threads(threads), call)))
+            x, y, z, point_sigma, point_weight, like, bounds, cell, crs, nodes, binning,
+            gridding, method, _method_settings(method, settings), _threads(threads), call)))
 
 
 def _with_no_source(result):
