@@ -9,6 +9,7 @@ import keyword
 import sys
 
 import libdem
+from libdem import _tables
 
 # What the parameters are, by name.
 TYPES = {
@@ -18,10 +19,10 @@ TYPES = {
     "crs": "str", "inner_only": "bool", "max_area_km2": "float | None", "max_distance_m": "float | None",
     "min_cells": "int | None", "where": "str", "region": "Path", "whole": "bool", "aux": "Path | Sequence[Path]",
     "water": "Path", "report_holes": "bool", "threads": "int", "progress": "Progress", "factor": "float",
-    "preserve": 'Literal["heights", "block-mean"]', "nodes": "bool | None",
+    "nodes": "bool | None",
     "bounds": "tuple[float, float, float, float] | None", "cell": "str | float",
     "point_sigma": "npt.ArrayLike | None", "point_weight": "npt.ArrayLike | None",
-    "combine": 'Literal["mean", "min", "max", "median"]', "reject_outliers": "float", "snap": "bool", "passes": "int",
+    "reject_outliers": "float", "snap": "bool", "passes": "int",
     "keep": "float | None", "count": "int | None", "every": "int | None", "edges": "float | None",
     "voids": "float | None", "tracks": "int | None", "contours_m": "float | None", "greedy": "int | None",
     "max_error_m": "float | None", "seed": "int", "shape": "int | tuple[int, int] | None",
@@ -36,6 +37,8 @@ PROPERTIES = {"z": "npt.NDArray[np.float32]", "known": "npt.NDArray[np.bool_]",
               "elevation": "npt.NDArray[np.floating[Any]]", "shape": "tuple[int, int]",
               "spacing": "tuple[float, float]", "to_world": "list[float]", "crs": "str", "dtype": "str",
               "nodata": "float | None"}
+# Parameters that choose one of the names of a field: (options, field).
+CHOICES = {"preserve": ("supersample", "preserve"), "combine": ("bin", "combine")}
 KINDS = {"number": "float", "integer": "int", "boolean": "bool"}
 
 HEAD = '''\
@@ -61,12 +64,19 @@ __version__: str
 def type_of(field):
     if field.type in KINDS:
         return KINDS[field.type]
+    if field.type == "text":
+        return "str"
     choices = f"Literal[{', '.join(repr(choice) for choice in field.choices)}]"
     return f"bool | {choices}" if field.name == "sigma" else choices
 
 
+def chosen_type(name):
+    options, field = CHOICES[name]
+    return type_of(next(f for f in _tables.option_fields()[options] if f.name == field))
+
+
 def parameter(p):
-    text = f"{p.name}: {TYPES[p.name]}"
+    text = f"{p.name}: {TYPES[p.name] if p.name in TYPES else chosen_type(p.name)}"
     return text if p.default is inspect.Parameter.empty else f"{text} = {p.default!r}"
 
 

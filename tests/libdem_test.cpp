@@ -241,4 +241,23 @@ TEST_F(LibdemCFiles, KeepTypeAndPlaceOfTheirSource) {
   EXPECT_EQ(libdem_write(out.get(), path("out.tif").c_str(), 1, &error), LIBDEM_OK);
 }
 
+TEST(LibdemC, EvaluatesTheFilledCellsAlone) {
+  auto z = hill_with_hole();
+  const Dem holes = made(z);
+  const Dem got = filled(holes, chosen("spline"));
+  auto moved = heights(got);
+  for (std::size_t i = 0; i < z.size(); ++i) moved[i] += std::isfinite(z[i]) ? 0 : 3;
+  const Dem truth = made(moved);
+  libdem_errors errors;
+  libdem_error error;
+  ASSERT_EQ(libdem_evaluate(truth.get(), got.get(), holes.get(), &errors, &error), LIBDEM_OK)
+      << error.text;
+  EXPECT_EQ(errors.cells,
+            std::size_t(std::ranges::count_if(z, [](float v) { return !std::isfinite(v); })));
+  EXPECT_NEAR(errors.bias_m, -3, 1e-4);
+  EXPECT_NEAR(errors.max_m, 3, 1e-3);
+  EXPECT_EQ(libdem_evaluate(truth.get(), got.get(), truth.get(), &errors, &error), LIBDEM_INVALID);
+  EXPECT_NE(std::string(error.text).find("sampled"), std::string::npos) << error.text;
+}
+
 }  // namespace

@@ -187,20 +187,6 @@ void warn_of_outliers(const Dem& dem, Shell& shell) {
       found.count > names.size() ? ", ..." : "");
 }
 
-Mask removed_cells(const Dem& whole, const Dem& sampled) {
-  Mask removed = whole.known;
-  for (std::size_t i = 0; i < removed.cells().size(); ++i)
-    if (sampled.known.cells()[i]) removed.cells()[i] = 0;
-  return removed;
-}
-
-Raster<float> completed(const Dem& dem, const Raster<float>& other) {
-  Raster<float> z = dem.z;
-  for (std::size_t i = 0; i < z.cells().size(); ++i)
-    if (!dem.known.cells()[i]) z.cells()[i] = other.cells()[i];
-  return z;
-}
-
 OutputFolder::OutputFolder(const std::string& path) : path_(path) {
   std::error_code error;
   made_ = fs::create_directory(path, error);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "dem/dem.h"
+#include "dem/evaluation.h"
 #include "dem/io/rasters.h"
 #include "dem/run.h"
 #include "progress.h"
@@ -114,12 +115,6 @@ bool holds_metadata(const std::string& path, const std::string& format);
 
 /// Warns of known heights that cannot be meant, by name.
 void warn_of_outliers(const Dem& dem, Shell& shell);
-
-/// Cells known in `whole` and unknown in `sampled`.
-Mask removed_cells(const Dem& whole, const Dem& sampled);
-
-/// The heights of `dem`, and those of `other` where it is unknown: for slopes beside voids.
-Raster<float> completed(const Dem& dem, const Raster<float>& other);
 
 /// A folder for results. Made if it is not there; taken away again if nothing was written in it.
 class OutputFolder {

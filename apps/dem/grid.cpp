@@ -5,7 +5,6 @@
 #include <chrono>
 #include <optional>
 
-#include "dem/contours.h"
 #include "dem/gridding.h"
 #include "dem/io/lattices.h"
 #include "dem/io/methods.h"
@@ -15,11 +14,6 @@
 
 namespace dem::app {
 namespace {
-
-const std::vector<std::pair<std::string, Combine>> kCombine{{"mean", Combine::mean},
-                                                            {"min", Combine::min},
-                                                            {"max", Combine::max},
-                                                            {"median", Combine::median}};
 
 struct Options {
   std::string points, out, sigma, breaklines;
@@ -47,10 +41,8 @@ ChosenMethod choose(const Options& o) {
   for (const auto& text : o.set) chosen.settings.push_back(parse_setting(text));
   if (!o.sigma.empty()) chosen.settings.emplace_back("sigma", "law");
   if (!o.breaklines.empty() && !o.no_fill) check_honours_breaklines(*chosen.method);
-  // One known cell is cheap to fill: bad settings show before long work.
-  const Filled trial =
-      chosen.method->fill({Raster<float>({1, 1}), Mask({1, 1}, 1), {}, {}}, chosen.settings, {});
-  if (!o.sigma.empty() && trial.sigma.empty())
+  chosen.check();
+  if (!o.sigma.empty() && !chosen.gives_sigma())
     throw std::invalid_argument("sigma: method " + o.method + " gives no standard deviation");
   return chosen;
 }
@@ -237,7 +229,7 @@ std::size_t count_absurd(const Dem& dem) {
   return n;
 }
 
-void say_what_was_read(const Options& o, const Read& read, Shell& shell) {
+void say_what_was_read(Options& o, const Read& read, Shell& shell) {
   const BinCounts& n = read.binned.counts;
   const Dem& dem = read.binned.dem;
   for (const auto& note : read.source.notes) shell.say("{}", note);
@@ -257,10 +249,8 @@ void say_what_was_read(const Options& o, const Read& read, Shell& shell) {
         "warning: {} with elevations beyond {:g} m; --reject-outliers or --nodata leaves such out",
         plural(absurd, "cell"), kAbsurd_m);
   if (n.duplicates > 0)
-    shell.say(
-        "{} at the place of another with another elevation: combined by {}",
-        plural(n.duplicates, "point"),
-        std::ranges::find(kCombine, o.bin.combine, &decltype(kCombine)::value_type::second)->first);
+    shell.say("{} at the place of another with another elevation: combined by {}",
+              plural(n.duplicates, "point"), field(o.bin, "combine").text());
   if (n.outliers > 0) shell.say("{} taken for outliers and left out", plural(n.outliers, "cell"));
   shell.say("{} in {} of {} cells ({})", plural(n.points - n.outside, "point"), grouped(n.cells),
             grouped(dem.size().cells()), percent_of(n.cells, dem.size().cells()));
@@ -333,18 +323,16 @@ std::size_t say_what_is_closed_off(const Dem& dem, Shell& shell) {
 
 /// Contour lines by their own method have their levels as bounds; all else goes through its points.
 Gridded fill(const Options& o, const Read& read, const ChosenMethod& method, const Run& run) {
-  if (!o.contours || method.method->name != "contours")
+  if (!o.contours || !method.method->fill_lines)
     return fill_points(read.binned, method, o.gridding, run);
-  ContourOptions options;
-  apply(method.settings, fields(options));
-  return {fill_contours(read.lines, read.binned.dem.z, options, run), {}};
+  return {method.method->fill_lines(read.lines, read.binned.dem.z, method.settings, run), {}};
 }
 
 int grid(Options& o, Shell& shell) {
   check_options(o);
   if (!o.delimiter.empty()) o.read.delimiter = parse_delimiter(o.delimiter);
   o.bin.plane = !o.snap;
-  if (o.method.empty()) o.method = o.contours ? "contours" : std::string(default_fill_method());
+  if (o.method.empty()) o.method = o.contours ? default_contour_method() : default_fill_method();
   const ChosenMethod method = choose(o);
   check_writable(o.out, shell.overwrite);
   if (!o.sigma.empty()) check_writable(o.sigma, shell.overwrite);
@@ -365,7 +353,7 @@ int grid(Options& o, Shell& shell) {
     Gridded gridded = fill(o, read, method, run.part(0.4, 0.9));
     const double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    if (method.method->traits.for_contours && !on_contour_lines(gridded.filled.report))
+    if (method.method->traits.for_contours && !gridded.filled.contour_lines)
       shell.say("{}: the cells with points are no contour lines; the spline filled the rest",
                 o.method);
     dem.z = std::move(gridded.filled.z);
@@ -470,13 +458,9 @@ void add_grid(CLI::App& app, Shell& shell) {
       ->check(takes("vector"))
       ->type_name("LAYER");
   verb->add_option_function<std::string>(
-          "--combine",
-          [o](const std::string& name) {
-            for (const auto& [text, how] : kCombine)
-              if (text == name) o->bin.combine = how;
-          },
+          "--combine", [o](const std::string& name) { field(o->bin, "combine").set(name); },
           "several points in a cell: mean, min, max, median; default mean")
-      ->check(one_of({"mean", "min", "max", "median"}))
+      ->check(one_of(field(o->bin, "combine").choices()))
       ->type_name("HOW");
   verb->add_option("--reject-outliers", o->bin.outliers,
                    "leave out cells so many spreads off their surroundings, e.g. 10")

@@ -24,18 +24,18 @@ ChosenMethod choose(const Options& o) {
   ChosenMethod chosen = find_method(all_fill_methods(), o.method);
   for (const auto& text : o.set) chosen.settings.push_back(parse_setting(text));
   if (o.roughness) {
-    if (chosen.method->name != "spline")
+    if (!chosen.method->has_setting("realisation"))
       throw std::invalid_argument("--roughness is the spline's; method " + o.method + " has none");
     chosen.settings.emplace_back("realisation", "1");
     chosen.settings.emplace_back("seed", std::to_string(o.seed));
   }
-  // One known cell is cheap to fill: bad settings show before long work.
-  chosen.method->fill({Raster<float>({1, 1}), Mask({1, 1}, 1), {}, {}}, chosen.settings, {});
+  chosen.check();
   return chosen;
 }
 
 int run_supersample(const Options& o, Shell& shell) {
   const ChosenMethod method = choose(o);
+  check_options(o.super);
   check_writable(o.out, shell.overwrite);
   const Run run = shell.run();
   DemFile file = read_dem(o.in, o.read, run.part(0, 0.1));
@@ -67,7 +67,7 @@ int run_supersample(const Options& o, Shell& shell) {
                {"cols", lattice.size.cols},
                {"rows", lattice.size.rows},
                {"cell_m", {lattice.spacing.dx_m, lattice.spacing.dy_m}},
-               {"preserve", means ? "block-mean" : "heights"},
+               {"preserve", field(options, "preserve").text()},
                {"miss_rms_m", fine.miss_rms_m},
                {"miss_max_m", fine.miss_max_m}},
               "");
@@ -95,12 +95,9 @@ void add_supersample(CLI::App& app, Shell& shell) {
       ->required()
       ->type_name("N");
   verb->add_option_function<std::string>(
-          "--preserve",
-          [o](const std::string& what) {
-            o->super.preserve = what == "heights" ? Preserve::heights : Preserve::means;
-          },
+          "--preserve", [o](const std::string& what) { field(o->super, "preserve").set(what); },
           "heights (default): met at the coarse centres; block-mean")
-      ->check(one_of({"heights", "block-mean"}))
+      ->check(one_of(field(o->super, "preserve").choices()))
       ->type_name("WHAT");
   verb->add_flag("--roughness", o->roughness,
                  "a random surface, as rough below the old cell size as terrain is");

@@ -143,6 +143,21 @@ libdem_status libdem_fill(const libdem_dem* dem, const libdem_method* method,
                           const libdem_choice* choice, const libdem_run* run, libdem_dem** filled,
                           libdem_error* error);
 
+/* Errors of elevation, got - truth, in metres, over a set of cells. */
+typedef struct libdem_errors {
+  size_t cells;
+  double rmse_m, mae_m, bias_m; /* root of the mean square, mean of the sizes, mean */
+  double nmad_m, le90_m, max_m; /* 1.4826 median |e - median e|; 90 % are not larger; largest */
+  double slope_rmse_deg;        /* of the slope; NaN when no cell has eight neighbours */
+} libdem_errors;
+
+/* Compares a reconstruction with the truth, over the cells known in both. `sampled`: the DEM that
+ * was filled; then the cells that it does not know are judged alone. NULL: not given. All have one
+ * size. */
+libdem_status libdem_evaluate(const libdem_dem* truth, const libdem_dem* got,
+                              const libdem_dem* sampled, libdem_errors* errors,
+                              libdem_error* error);
+
 #ifdef __cplusplus
 }
 #endif

@@ -118,7 +118,7 @@ class Refusals(ReportTest):
                  ("curve", TRUTH, "curves"))
         for verb in verbs:
             for path, code, says in (("folder", 2, "folder: is a folder"), ("none/a.html", 2, "none does not exist"),
-                                     ("there.html", 2, "exists; give --overwrite"),
+                                     ("there.html", 2, "overwriting it was not asked for (--overwrite)"),
                                      ("a.tif", 1, "report = a.tif; must be a file name in .html")):
                 self.fails(code, *verb, "--report", path, says=[says])
         self.assert_files("N10E010.hgt", TRUTH, "folder", "there.html")

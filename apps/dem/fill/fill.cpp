@@ -6,7 +6,6 @@
 #include <optional>
 #include <tuple>
 
-#include "dem/contours.h"
 #include "dem/io/fill_job.h"
 #include "dem/io/methods.h"
 #include "fill/fill_json.h"
@@ -15,11 +14,6 @@
 
 namespace dem::app {
 namespace {
-
-const std::vector<std::pair<std::string, CellType>> kTypes{
-    {"int8", CellType::int8},       {"uint8", CellType::uint8},    {"int16", CellType::int16},
-    {"uint16", CellType::uint16},   {"int32", CellType::int32},    {"uint32", CellType::uint32},
-    {"float32", CellType::float32}, {"float64", CellType::float64}};
 
 struct Options {
   std::string in, out, sigma;
@@ -42,8 +36,7 @@ struct Options {
 /// Adds a setting that an option of its own stands for, unless it is among the settings already.
 void add_setting(ChosenMethod& chosen, const std::string& name, const std::string& value,
                  const std::string& option) {
-  if (std::ranges::find(chosen.method->fields, name, &FieldInfo::name) ==
-      chosen.method->fields.end())
+  if (!chosen.method->has_setting(name))
     throw std::invalid_argument(
         fmt::format("{}: method {} has no setting {}", option, chosen.method->name, name));
   if (std::ranges::find(chosen.settings, name, &Settings::value_type::first) ==
@@ -61,6 +54,7 @@ ChosenMethod choose(const Options& o) {
     if (o.roughness != "auto") add_setting(chosen, "roughness", o.roughness, "--roughness");
   }
   if (o.seed) add_setting(chosen, "seed", std::to_string(*o.seed), "--seed");
+  chosen.check();
   return chosen;
 }
 
@@ -75,8 +69,7 @@ std::string known_cells(const Options& o, const FillReport& report, CellType typ
   if (!report.known_kept) return "CHANGED";
   const std::string sum = fmt::format(" (checksum {:016x})", report.known_checksum);
   if (!o.write.type || *o.write.type == type) return "unchanged" + sum;
-  return "written as " +
-         std::ranges::find(kTypes, *o.write.type, &decltype(kTypes)::value_type::second)->first;
+  return "written as " + cell_type_names()[std::size_t(*o.write.type)];
 }
 
 void say_what_was_filled(const Options& o, const FillJob& job, Shell& shell) {
@@ -104,7 +97,7 @@ void report(const Options& o, const FillJob& job, Shell& shell) {
     shell.say("all cells are known: {} is a copy of {}", o.out, o.in);
   } else {
     say_what_was_filled(o, job, shell);
-    if (chosen.method->traits.for_contours && !on_contour_lines(report.figures))
+    if (chosen.method->traits.for_contours && !report.contour_lines)
       shell.say("{}: the known cells are no contour lines; the spline filled the rest", o.method);
   }
   for (const auto& fit : report.guides)
@@ -276,12 +269,6 @@ int fill(const Options& o, Shell& shell) {
   return exit_code(job.report());
 }
 
-std::vector<std::string> type_names() {
-  std::vector<std::string> names;
-  for (const auto& [name, type] : kTypes) names.push_back(name);
-  return names;
-}
-
 std::string method_names() {
   std::vector<std::string> names;
   for (const auto& m : all_fill_methods()) names.push_back(m.name);
@@ -346,14 +333,13 @@ void add_write_options(CLI::App& app, WriteOptions& write) {
   app.add_option_function<std::string>(
          "--type",
          [&write](const std::string& name) {
-           for (const auto& [text, type] : kTypes)
-             if (text == name) write.type = type;
+           apply({{"type", name}}, fields(write));
          },
          "int8 uint8 int16 uint16 int32 uint32 float32 float64; else as IN")
-      ->check(suggests(type_names()))
+      ->check(suggests(cell_type_names()))
       ->check([](const std::string& name) {
-        for (const auto& [text, type] : kTypes)
-          if (text == name) return std::string();
+        if (std::ranges::find(cell_type_names(), name) != cell_type_names().end())
+          return std::string();
         return name +
                " is no cell type; must be int8, uint8, int16, uint16, int32, uint32, float32 or "
                "float64";

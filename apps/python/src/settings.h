@@ -13,7 +13,7 @@ namespace dem::python {
 inline ChosenMethod choose_method(const std::string& name, const Settings& settings) {
   ChosenMethod chosen = find_method(all_fill_methods(), name);
   chosen.settings.insert(chosen.settings.end(), settings.begin(), settings.end());
-  chosen.method->fill({Raster<float>({1, 1}), Mask({1, 1}, 1), {}, {}}, chosen.settings, {});
+  chosen.check();
   return chosen;
 }
 

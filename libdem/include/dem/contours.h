@@ -44,8 +44,8 @@ ContourBounds contour_bounds(const Dem& dem, const ContourOptions& options = {},
 ///         Cells that are still outside are clamped. Cells of lines pull the surface with a nugget,
 ///         because they lie up to half a cell away from their line.
 /// Gives:  known cells bit for bit; all others within their bounds. When the known cells are not
-///         contour lines, the result is that of the spline. The report has contour_lines (1 or 0),
-///         cells_held and cells_clamped.
+///         contour lines, the result is that of the spline, and Filled::contour_lines is false.
+///         The report has contour_lines (1 or 0), cells_held and cells_clamped.
 /// Cost:   that of 1 + rounds splines.
 /// Throws: std::invalid_argument, Cancelled.
 Filled fill_contours(const Dem& dem, const ContourOptions& options = {}, const Run& run = {});
@@ -55,8 +55,5 @@ Filled fill_contours(const Dem& dem, const ContourOptions& options = {}, const R
 /// of `lines` give the bounds.
 Filled fill_contours(const Dem& lines, const Raster<float>& at_centres,
                      const ContourOptions& options, const Run& run = {});
-
-/// Whether the report of fill_contours says that the known cells were contour lines.
-bool on_contour_lines(const std::vector<Figure>& report);
 
 }  // namespace dem

@@ -68,6 +68,7 @@ struct Filled {
   Raster<float> z;
   Raster<float> sigma{};  ///< standard error in metres, 0 at known cells; empty when not asked for
   std::vector<Figure> report{};
+  bool contour_lines = false;  ///< fill_contours: the known cells were contour lines
 };
 
 /// Throws std::invalid_argument unless z, known and breaks (if any) have the same size, of at least

@@ -87,6 +87,7 @@ struct FillReport {
   double seconds = 0;             ///< wall time of the filling
   double window_seconds = 0;      ///< time of all windows, one after another, of this run
   std::vector<Figure> figures;    ///< of the method, when there was one window
+  bool contour_lines = false;     ///< the method found contour lines in a window
   std::vector<GuideFit> guides;
 };
 

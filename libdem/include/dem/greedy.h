@@ -13,6 +13,7 @@ struct GreedyOptions {
   std::size_t count = 0;   ///< number of cells to keep; 0: as many as max_error_m needs
   double max_error_m = 0;  ///< stop when no error is larger; 0: count decides alone
 };
+std::vector<Field> fields(GreedyOptions& options);
 
 /// The errors of the reconstruction from `kept` cells, over all known cells.
 struct GreedyRound {

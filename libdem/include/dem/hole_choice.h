@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "dem/fields.h"
 #include "dem/holes.h"
 
 namespace dem {
@@ -19,6 +20,8 @@ struct HoleChoice {
   std::optional<std::size_t> min_cells;  ///< smallest number of cells
   std::string where;                     ///< a condition in words, see parse_hole_filter; "": none
 };
+
+std::vector<Field> fields(HoleChoice& choice);
 
 /// Throws std::invalid_argument when a limit or the condition cannot be meant.
 void check(const HoleChoice& choice);

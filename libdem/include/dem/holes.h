@@ -154,6 +154,7 @@ struct HolePatch {
   /// Of each hole: how many cells come from method, guide, water, and how many are left.
   std::vector<std::array<std::uint64_t, 4>> cells_by_origin;
   std::vector<Figure> report;  ///< what the method says of the window
+  bool contour_lines = false;  ///< the method found contour lines in the window
   double seconds = 0;
 };
 

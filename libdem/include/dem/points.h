@@ -9,6 +9,7 @@
 
 #include "dem/breaklines.h"
 #include "dem/dem.h"
+#include "dem/fields.h"
 #include "dem/run.h"
 
 namespace dem {
@@ -44,6 +45,7 @@ struct BinOptions {
   /// with fewer than five others within 32 cells is never taken for an outlier.
   double outliers = 0;
 };
+std::vector<Field> fields(BinOptions& options);
 
 /// A point that lay off the centre of its cell (several points: their centroid).
 struct OffCentre {

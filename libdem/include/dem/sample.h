@@ -7,8 +7,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "dem/dem.h"
+#include "dem/fields.h"
 
 namespace dem {
 
@@ -34,6 +36,7 @@ struct VoidOptions {
   int max_across = 60;     ///< >= min_across
   std::uint64_t seed = 1;
 };
+std::vector<Field> fields(VoidOptions& options);
 Dem sample_voids(const Dem& dem, const VoidOptions& options);
 
 /// Keeps the cells under `tracks` (>= 1) straight lines, each from one side of the raster to

@@ -54,6 +54,20 @@ struct SplineOptions {
 };
 std::vector<Field> fields(SplineOptions& options);
 
+/// Throws std::invalid_argument for a value out of its range, and for lengths that are set while
+/// they are chosen from the DEM.
+void check_settings(const SplineOptions& options);
+
+/// Whether fill_spline gives a standard error with these options.
+bool gives_sigma(const SplineOptions& options);
+
+/// A filled DEM, and the springs that it was filled with.
+struct SplineFilled : Filled {
+  double L1_rows = 0, L3_rows = 0;
+  bool fourth_order = true;
+  double scale_m = 0;  ///< of the springs; 0 unless sigma or a realisation was asked for
+};
+
 /// Fills every unknown cell with the terrain spline.
 /// Method:   springs of orders one to three with free boundaries, after [szeliski1989] and
 ///           [smith1990] (a membrane and a plate). They act on the known cells minus their
@@ -74,11 +88,11 @@ std::vector<Field> fields(SplineOptions& options);
 /// Cost:     O(cells), about 40 bytes a cell in addition to the result, 12 more when adaptive. Any
 ///           number of threads gives the same bits.
 /// Throws:   std::invalid_argument, Cancelled.
-Filled fill_spline(const Dem& dem, const SplineOptions& options = {}, const Run& run = {});
+SplineFilled fill_spline(const Dem& dem, const SplineOptions& options = {}, const Run& run = {});
 
 /// The same with noise that differs from cell to cell. `noise` has the size of the DEM and
 /// multiplies the nugget (1: unchanged; 0: this cell is exact).
-Filled fill_spline(const Dem& dem, const Raster<float>& noise, const SplineOptions& options,
-                   const Run& run = {});
+SplineFilled fill_spline(const Dem& dem, const Raster<float>& noise, const SplineOptions& options,
+                         const Run& run = {});
 
 }  // namespace dem

@@ -13,12 +13,13 @@ enum class Preserve {
 };
 
 struct SupersampleOptions {
-  double factor = 2;  ///< how many times finer: 2 halves the cell size; above 1
+  double factor = 2;  ///< how many times finer, along either axis: 2 halves the cell size; above 1
   Preserve preserve = Preserve::heights;
   /// Nodes: the outer fine cells have the centres of the outer coarse ones. Otherwise both lattices
   /// have the same outer edges.
   bool nodes = false;
 };
+std::vector<Field> fields(SupersampleOptions& options);
 
 /// The finer lattice. Its cell size is as close to 1 / factor of the coarse one as whole numbers of
 /// columns and rows allow.

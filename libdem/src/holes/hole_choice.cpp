@@ -3,23 +3,28 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <cmath>
 #include <functional>
 #include <stdexcept>
 
 namespace dem {
-namespace {
 
-void check_above_zero(const char* name, const std::optional<double>& value) {
-  if (value && !(*value > 0 && std::isfinite(*value)))
-    throw std::invalid_argument(fmt::format("{} = {}; must be a number above 0", name, *value));
+std::vector<Field> fields(HoleChoice& choice) {
+  const Range above_zero{.min = 0, .above_min = true};
+  return {
+      {"inner_only", choice.inner_only, "leave voids that touch the border of the raster"},
+      {"max_area_km2", choice.max_area_km2, above_zero, "km2", "fill only voids up to this area"},
+      {"max_distance_m", choice.max_distance_m, above_zero, "m",
+       "fill only voids without a cell farther than this from the nearest known cell"},
+      {"min_cells",
+       choice.min_cells,
+       {.min = 1},
+       "cells",
+       "fill only voids of at least this number of cells"},
+      {"where", choice.where, "fill only voids that meet a condition, such as area_km2 < 5"}};
 }
 
-}  // namespace
-
 void check(const HoleChoice& choice) {
-  check_above_zero("max_area_km2", choice.max_area_km2);
-  check_above_zero("max_distance_m", choice.max_distance_m);
+  check_options(choice);
   if (!choice.where.empty()) parse_hole_filter(choice.where);
 }
 

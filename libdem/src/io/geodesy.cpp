@@ -107,6 +107,10 @@ Spacing middle_spacing(const GeoRef& ref, Size size) {
 
 void set_spacing(Dem& dem) {
   dem.spacing = middle_spacing(dem.ref, dem.size());
+  set_row_spacing(dem);
+}
+
+void set_row_spacing(Dem& dem) {
   dem.row_spacing.clear();
   if (is_geographic(dem.ref)) dem.row_spacing = spacing_by_row(dem.ref, dem.size());
 }

@@ -13,6 +13,7 @@
 #include <span>
 #include <stdexcept>
 
+#include "dem/evaluation.h"
 #include "dem/fill.h"
 #include "dem/io/methods.h"
 #include "dem/io/rasters.h"
@@ -115,12 +116,6 @@ std::span<const dem::FillMethod> methods() noexcept {
 
 dem::ChosenMethod choose(const char* name) {
   return dem::find_method(dem::all_fill_methods(), name ? name : dem::default_fill_method());
-}
-
-/// Throws when a setting is refused: one known cell costs nothing to fill.
-void try_out(const dem::ChosenMethod& chosen) {
-  const dem::Dem one{dem::Raster<float>({1, 1}), dem::Mask({1, 1}, 1), {}, {}};
-  chosen.method->fill(one, chosen.settings, {});
 }
 
 /// Limits of 0 are none.
@@ -246,7 +241,7 @@ libdem_status libdem_set(libdem_method* method, const char* name, const char* va
   return guarded(error, [&] {
     dem::ChosenMethod changed = given(method, "method").chosen;
     changed.settings.emplace_back(&given(name, "name"), &given(value, "value"));
-    try_out(changed);
+    changed.check();
     method->chosen = std::move(changed);
   });
 }
@@ -267,5 +262,17 @@ libdem_status libdem_fill(const libdem_dem* dem, const libdem_method* method,
     dem::HoleFill result = dem::fill_holes(holes.dem, options, {}, run_of(run));
     return std::unique_ptr<libdem_dem>(
         new libdem_dem{std::move(result.dem), holes.source, std::move(result.sigma)});
+  });
+}
+
+libdem_status libdem_evaluate(const libdem_dem* truth, const libdem_dem* got,
+                              const libdem_dem* sampled, libdem_errors* errors,
+                              libdem_error* error) {
+  return guarded(error, [&] {
+    libdem_errors& out = given(errors, "errors");
+    const dem::Evaluation evaluation = dem::evaluate_dem(
+        given(truth, "truth").dem, given(got, "got").dem, {sampled ? &sampled->dem : nullptr});
+    const dem::Errors& e = evaluation.judged_errors();
+    out = {e.cells, e.rmse_m, e.mae_m, e.bias_m, e.nmad_m, e.le90_m, e.max_m, e.slope_rmse_deg};
   });
 }

@@ -48,8 +48,7 @@ std::vector<Field> fields(IdwOptions& o) {
 
 Filled fill_idw(const Dem& dem, const IdwOptions& options, const Run& run) {
   check_fillable(dem);
-  IdwOptions checked = options;
-  check(fields(checked));
+  check_options(options);
 
   Raster<float> z = dem.z;
   Mask known = dem.known;
@@ -101,9 +100,9 @@ Filled fill_pushpull(const Dem& dem, const PushPullOptions&, const Run& run) {
 const std::vector<FillMethod>& baseline_methods() {
   static const std::vector<FillMethod> table{
       make_method<IdwOptions>("idw", "inverse distance by GDAL's FillNodata, no distance limit", "",
-                              {}, fill_idw),
+                              {.bytes_per_cell = 64}, {}, fill_idw),
       make_method<PushPullOptions>("pushpull", "push-pull pyramid by OpenImageIO", "gortler1996",
-                                   {}, fill_pushpull)};
+                                   {.bytes_per_cell = 64}, {}, fill_pushpull)};
   return table;
 }
 

@@ -16,13 +16,6 @@ namespace {
 /// surroundings of voids.
 constexpr double whole_share = 0.25;
 
-/// Whether a method with its settings gives a standard error. One known cell is cheap to fill, and
-/// bad settings show.
-bool gives_sigma(const ChosenMethod& chosen) {
-  const Dem one{Raster<float>({1, 1}), Mask({1, 1}, 1), {}, {}};
-  return !chosen.method->fill(one, chosen.settings, {}).sigma.empty();
-}
-
 /// Adds what a patch says to the report.
 void account(const HolePatch& patch, const FillPlan& plan, FillReport& report) {
   for (std::size_t i = 0; i < patch.holes.size(); ++i) {
@@ -37,6 +30,7 @@ void account(const HolePatch& patch, const FillPlan& plan, FillReport& report) {
     report.guide_cells += hole.guide_cells;
   }
   if (plan.windows.size() == 1) report.figures = patch.report;
+  report.contour_lines = report.contour_lines || patch.contour_lines;
 }
 
 /// Heights go straight to their place in a DEM. Others still look at its mask, so that is changed
@@ -86,11 +80,10 @@ FillOptions checked(FillOptions options) {
   check(options.holes);
   const auto is_sigma = [](const auto& setting) { return setting.first == "sigma"; };
   const FillMethod& method = *options.method.method;
-  const bool has_setting = std::ranges::any_of(
-      method.fields, [](const FieldInfo& field) { return field.name == "sigma"; });
-  if (options.sigma && has_setting && std::ranges::none_of(options.method.settings, is_sigma))
+  if (options.sigma && method.has_setting("sigma") &&
+      std::ranges::none_of(options.method.settings, is_sigma))
     options.method.settings.emplace_back("sigma", "law");
-  const bool gives = gives_sigma(options.method);
+  const bool gives = options.method.gives_sigma();
   if (options.sigma && !gives)
     throw std::invalid_argument(
         fmt::format("sigma: method {} gives no standard error", method.name));

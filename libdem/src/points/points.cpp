@@ -251,6 +251,7 @@ struct PointBins::Bins {
 
   Bins(Lattice l, const BinOptions& o, Breaklines breaklines)
       : lattice(std::move(l)), options(o), lines(std::move(breaklines)), to_cells(lattice.ref) {
+    check_options(options);
     const Size size = lattice.size;
     if (size.cols < 1 || size.rows < 1)
       throw std::invalid_argument(
@@ -494,6 +495,22 @@ void PointBins::Bins::move_to_centres(Binned& out, const Run& run) const {
   }
   for (const auto& part : off_centre)
     out.off_centre.insert(out.off_centre.end(), part.begin(), part.end());
+}
+
+std::vector<Field> fields(BinOptions& o) {
+  return {{"combine",
+           o.combine,
+           {"mean", "min", "max", "median"},
+           "what becomes of several points in one cell"},
+          {"plane", o.plane,
+           "a height is moved to the centre of its cell along the plane through the cells around; "
+           "false: it is taken as it is"},
+          {"outliers",
+           o.outliers,
+           {0, 1e9},
+           "",
+           "drop cells more than this number of robust standard deviations from their neighbours; "
+           "0: drop none"}};
 }
 
 PointBins::PointBins(Lattice lattice, const BinOptions& options, Breaklines lines)

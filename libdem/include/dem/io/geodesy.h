@@ -24,8 +24,11 @@ std::vector<Spacing> spacing_by_row(const GeoRef& ref, Size size);
 /// The spacing of the middle row.
 Spacing middle_spacing(const GeoRef& ref, Size size);
 
-/// Sets Dem::spacing, and Dem::row_spacing when cells are in degrees, from the georeference.
+/// Sets Dem::spacing and Dem::row_spacing from the georeference.
 void set_spacing(Dem& dem);
+
+/// Sets Dem::row_spacing: one for each row when cells are in degrees, else empty.
+void set_row_spacing(Dem& dem);
 
 /// Area of the cell at (col, row) in square metres (on the ellipsoid, when geographic).
 double cell_area_m2(const GeoRef& ref, int col, int row);

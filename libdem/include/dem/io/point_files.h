@@ -36,6 +36,8 @@ struct PointReadOptions {
   /// without a system are treated as being in this one.
   std::string to_crs{};
 };
+/// All but `delimiter` and `classes`.
+std::vector<Field> fields(PointReadOptions& options);
 
 /// What is known of a file of points after it was read.
 struct PointSource {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "dem/dem.h"
+#include "dem/fields.h"
 #include "dem/run.h"
 
 namespace dem {
@@ -17,8 +18,14 @@ namespace dem {
 /// A file could not be read or written: "path: cause".
 class IoError : public std::runtime_error {
  public:
-  IoError(const std::string& path, const std::string& cause)
-      : std::runtime_error(path + ": " + cause) {}
+  IoError(const std::string& path, const std::string& cause, std::string field = "")
+      : std::runtime_error(path + ": " + cause), field_(std::move(field)) {}
+
+  /// The option that would help, by the name of its field ("overwrite"), or "".
+  const std::string& field() const { return field_; }
+
+ private:
+  std::string field_;
 };
 
 enum class CellType { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
@@ -63,6 +70,8 @@ struct ReadOptions {
   /// The grey of an image that means unknown, from 0 (black) to 1 (white).
   std::optional<double> unknown_grey{};
 };
+/// All but `heights`.
+std::vector<Field> fields(ReadOptions& options);
 
 struct DemFile {
   Dem dem;
@@ -100,6 +109,11 @@ struct WriteOptions {
   /// metadata.
   std::vector<CellClass> classes{};
 };
+/// All but `heights`, `metadata` and `classes`.
+std::vector<Field> fields(WriteOptions& options);
+
+/// The names of the cell types, in their order: "int8", "uint8", ...
+const std::vector<std::string>& cell_type_names();
 
 /// Writes a DEM. The path holds either what it held before or the whole new file, because the file
 /// is written under a temporary name next to it and then renamed.

@@ -13,12 +13,8 @@
 namespace dem::io {
 
 std::size_t bytes_a_cell(const FillOptions& options, const FillFiles& files) {
-  const std::string& name = options.method.method->name;
-  const std::size_t method = name == "spline"                                  ? 110
-                             : name == "mcmd" || name == "md" || name == "mdi" ? 24
-                                                                               : 64;
-  return method + (options.sigma ? 30 : 0) + (options.rim_errors ? 10 : 0) + files.aux.size() * 30 +
-         (files.water.empty() ? 0 : 4);
+  return options.method.method->traits.bytes_per_cell.value + (options.sigma ? 30 : 0) +
+         (options.rim_errors ? 10 : 0) + files.aux.size() * 30 + (files.water.empty() ? 0 : 4);
 }
 
 std::size_t block_cache(std::size_t memory) { return std::min(memory / 6, 256 * mega); }

@@ -65,22 +65,23 @@ std::string bytes_of(const HolePatch& patch) {
   put(out, patch.rim_error_m);
   put(out, patch.offset_m);
   put(out, patch.cells_by_origin);
-  put(out, std::vector<double>{patch.seconds});
+  put(out, std::vector<double>{patch.seconds, patch.contour_lines ? 1. : 0.});
   return out;
 }
 
 HolePatch patch_of(std::string_view bytes, std::size_t window) {
   HolePatch patch;
   patch.window = window;
-  std::vector<double> seconds;
+  std::vector<double> more;
   Taker taker(bytes);
   taker.take(patch.holes);
   taker.take(patch.guide);
   taker.take(patch.rim_error_m);
   taker.take(patch.offset_m);
   taker.take(patch.cells_by_origin);
-  taker.take(seconds);
-  patch.seconds = seconds.empty() ? 0 : seconds[0];
+  taker.take(more);
+  patch.seconds = more.at(0);
+  patch.contour_lines = more.at(1) != 0;
   return patch;
 }
 

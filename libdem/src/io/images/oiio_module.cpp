@@ -78,7 +78,7 @@ std::unique_ptr<OIIO::ImageOutput> create(const std::string& path, const ImageSh
   auto output = OIIO::ImageOutput::create(path);
   if (!output) fail(OIIO::geterror());
   if (shape.alpha_channel >= 0 && !output->supports("alpha"))
-    fail("this format has no alpha for unknown cells; give --unknown-grey");
+    fail("this format has no alpha for unknown cells; unknown_grey must be given");
   return output;
 }
 

@@ -63,7 +63,7 @@ int choose_channel(const std::string& path, const ImageShape& shape, int asked) 
   }
   const int colours = shape.channels - (shape.alpha_channel >= 0);
   if (colours != 1)
-    throw IoError(path, fmt::format("has {} bands; choose one with --band N", colours));
+    throw IoError(path, fmt::format("has {} bands; one must be chosen", colours), "band");
   return shape.alpha_channel == 0 ? 1 : 0;
 }
 
@@ -236,7 +236,7 @@ void write_greys(const std::string& path, const Dem& dem, const Levels& levels,
 void write_heightmap(const std::string& path, const Dem& dem, const Source& source,
                      const WriteOptions& options, const Run& run) {
   if (options.nodata)
-    throw IoError(path, "an image has no no-data value; give --unknown-grey or leave it to alpha");
+    throw IoError(path, "an image has no nodata value; unknown_grey or alpha marks unknown cells");
   if (options.unknown_grey && !(*options.unknown_grey >= 0 && *options.unknown_grey <= 1))
     throw std::invalid_argument(
         fmt::format("unknown_grey = {}; must be in [0, 1]", *options.unknown_grey));

@@ -192,7 +192,7 @@ Corner corner_of(const std::string& path, const std::string& vsi, const ReadOpti
   }
   for (const std::string& name : {base_name(path), base_name(vsi)})
     if (const auto corner = find_corner(name)) return *corner;
-  throw IoError(path, "its name does not say which tile it is; give --tile, like --tile N36E008");
+  throw IoError(path, "its name does not say which tile it is, such as N36E008", "tile");
 }
 
 }  // namespace

@@ -109,6 +109,7 @@ struct RasterReader::File {
 };
 
 RasterReader::RasterReader(const std::string& path, const ReadOptions& options) {
+  check_options(options);
   if (is_hgt_name(path) || is_image_name(path) || options.heights || options.unknown_grey) {
     whole_ = std::make_unique<DemFile>(read_dem(path, options));
     return;

@@ -27,8 +27,10 @@ TileFolder::TileFolder(const std::string& path, bool overwrite)
     if (!fs::is_directory(path_, error)) throw IoError(path, "is not a folder");
     for (const auto& entry : fs::directory_iterator(path_, error))
       if (!overwrite)
-        throw IoError(path, fmt::format("holds {}; give --overwrite to replace what is there",
-                                        entry.path().filename().string()));
+        throw IoError(path,
+                      fmt::format("holds {}, and overwriting it was not asked for",
+                                  entry.path().filename().string()),
+                      "overwrite");
   } else {
     made_ = fs::create_directory(path_, error);
   }
