@@ -41,7 +41,6 @@ LIBRARIES = {
     "ogr_": {"io"},
     "GeographicLib/": {"io"},
     "OpenImageIO/": {"io"},
-    "CLI/": {"apps"},
     "nlohmann/": {"apps"},
     "pybind11/": {"apps"},
 }
@@ -180,7 +179,7 @@ def self_test():
         ("libdem/src/methods/methods.cpp", '#include "dem/mcmd.h"'),
         ("libdem/src/io/methods.cpp", '#include "dem/io/methods.h"\n#include <gdal_alg.h>'),
         ("libdem/src/io/images/oiio_module.cpp", "#include <OpenImageIO/imageio.h>"),
-        ("apps/dem/main.cpp", '#include "progress.h"\n#include "dem/io/rasters.h"\n#include <CLI/CLI.hpp>'),
+        ("apps/dem/main.cpp", '#include "progress.h"\n#include "dem/io/rasters.h"\n#include <fmt/format.h>'),
     ]
     for cases, count in (planted, 1), (allowed, 0):
         for path, text in cases:

@@ -8,7 +8,7 @@ set -euo pipefail
 packages=(
   g++ cmake ninja-build pkg-config
   libgdal-dev libgeographiclib-dev libopenimageio-dev libtbb-dev libeigen3-dev libfmt-dev
-  libcli11-dev nlohmann-json3-dev libjs-chart.js
+  nlohmann-json3-dev libjs-chart.js
   python3-dev python3-numpy pybind11-dev
   ca-certificates
 )

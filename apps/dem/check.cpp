@@ -1,6 +1,5 @@
 // dem check: do the tiles of a folder agree on the edges that they share?
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -129,18 +128,18 @@ int check_tiles(const Options& options, Shell& shell) {
 
 }  // namespace
 
-void add_check(CLI::App& app, Shell& shell) {
+void add_check(Program& program, Shell& shell) {
   const auto options = std::make_shared<Options>();
-  auto* verb = add_verb(app, shell, "check",
-                        "List tiles of a folder whose shared edges differ (then exit 4)",
-                        "  dem check tiles/\n"
-                        "  dem check tiles/ --json",
-                        [options, &shell] { return check_tiles(*options, shell); });
-  verb->add_option("DIR", options->folder, "a folder of .hgt or .tif tiles that share their edges")
-      ->required()
-      ->check(takes("folder"))
-      ->type_name("");
-  add_read_options(*verb, options->read);
+  Command& verb = program.add("check", kEveryday,
+                              "Compare the shared edges of the tiles in a folder (exit code 4 when "
+                              "they differ)",
+                              "  dem check tiles/\n"
+                              "  dem check tiles/ --json");
+  verb.work = [options, &shell] { return check_tiles(*options, shell); };
+  verb.argument("DIR", options->folder, "Folder of .hgt or .tif tiles that share their edges")
+      .kind("folder")
+      .must_be_given();
+  add_read_options(verb, options->read);
 }
 
 }  // namespace dem::app

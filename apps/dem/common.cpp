@@ -1,12 +1,12 @@
 #include "common.h"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <regex>
 #include <stdexcept>
 
 #include "dem/outliers.h"
@@ -17,35 +17,41 @@ namespace fs = std::filesystem;
 namespace {
 
 HeightRange parse_height_range(const std::string& text) {
-  const auto must_be = "LOW,HIGH in metres with LOW < HIGH, e.g. 0,4800";
+  const auto must_be = "LOW,HIGH in metres with LOW < HIGH, for example 0,4800";
   const auto comma = text.find(',');
   HeightRange range{0, 0};
   if (comma != std::string::npos) {
-    range.low_m = parse_number("height-range", text.substr(0, comma), must_be);
-    range.high_m = parse_number("height-range", text.substr(comma + 1), must_be);
+    range.low_m = parse_number("--height-range", text.substr(0, comma), must_be);
+    range.high_m = parse_number("--height-range", text.substr(comma + 1), must_be);
   }
-  if (!(range.low_m < range.high_m))
-    throw std::invalid_argument(fmt::format("height-range = {}; must be {}", text, must_be));
+  if (!(range.low_m < range.high_m)) refuse("--height-range", text, must_be);
   return range;
+}
+
+/// The name of a tile, as it stands in the names of .hgt files.
+std::string parse_tile(const std::string& text) {
+  static const std::regex name("[NSns][0-9]{2}[EWew][0-9]{3}");
+  if (!std::regex_match(text, name)) refuse("--tile", text, "the name of a tile such as N36E008");
+  return text;
 }
 
 }  // namespace
 
-void Shell::add_options(CLI::App& app) {
-  app.add_flag("--json", json, "print one JSON object on stdout")->group("Everywhere");
-  app.add_flag("-q,--quiet", quiet, "no messages, no progress; errors only")->group("Everywhere");
-  app.add_option("--progress", progress,
-                 "bar, json (lines on stderr), none; auto: a bar on a terminal")
-      ->check(one_of({"auto", "bar", "json", "none"}))
-      ->type_name("HOW")
-      ->capture_default_str()
-      ->group("Everywhere");
-  app.add_option("-j,--threads", threads, "0: as many as there are cores; the result is the same")
-      ->check(CLI::Range(0, 1024).description(""))
-      ->type_name("N")
-      ->capture_default_str()
-      ->group("Everywhere");
-  app.add_flag("--overwrite", overwrite, "replace existing output")->group("Everywhere");
+void Shell::add_options(Command& verb) {
+  verb.heading("Everywhere");
+  verb.flag("--json", json, "Print the result as one JSON object on standard output");
+  verb.flag("-q,--quiet", quiet, "Print errors only: no messages and no progress");
+  verb.option(
+          "--progress", progress, "HOW",
+          "How to show progress on standard error: a bar, JSON lines or not at all (auto: a bar "
+          "on a terminal)")
+      .one_of({"auto", "bar", "json", "none"})
+      .show_default();
+  verb.option("-j,--threads", threads, "N",
+              "Number of threads (0: one per core); the result does not depend on it")
+      .within(0, 1024)
+      .show_default();
+  verb.flag("--overwrite", overwrite, "Replace output files that exist");
 }
 
 Run Shell::run() {
@@ -66,70 +72,58 @@ void Shell::message(const std::string& line) {
   fmt::print(stderr, "{}\n", line);
 }
 
-CLI::App* add_verb(CLI::App& app, Shell& shell, const std::string& name, const std::string& summary,
-                   const std::string& examples, std::function<int()> work) {
-  auto* verb = app.add_subcommand(name, summary);
-  verb->footer("\nExamples:\n" + examples);
-  verb->callback([&shell, work = std::move(work)] { shell.verb = work; });
-  return verb;
+void add_read_options(Command& command, ReadOptions& options) {
+  command.heading("Reading");
+  command
+      .option("--band", options.band, "N",
+              "Band to read, counted from 1 (needed when the file has several bands)")
+      .within(1, 65535);
+  command.option_read_by(
+      "--tile", [&options](const std::string& text) { options.tile = parse_tile(text); }, "N36E008",
+      "Name of the .hgt tile, when the name of the file does not contain it");
+  command.option("--nodata", options.nodata, "VALUE",
+                 "Treat this value as nodata, whatever the file declares");
+  command.flag_that(
+      "--no-detect", [&options] { options.detect_nodata = false; },
+      "Do not treat undeclared values of -32768, -9999 and 32767 as nodata");
+  command.option_read_by(
+      "--height-range",
+      [&options](const std::string& text) { options.heights = parse_height_range(text); },
+      "LOW,HIGH", "Heights in metres of black and of white in an image");
+  command
+      .option("--unknown-grey", options.unknown_grey, "GREY",
+              "Grey level that means nodata in an image, from 0 (black) to 1 (white)")
+      .within(0, 1);
+  command.heading("Options");
 }
 
-void add_read_options(CLI::App& app, ReadOptions& options) {
-  const char* group = "Reading";
-  app.add_option("--band", options.band, "band to read, 1, 2, ...; needed when there are several")
-      ->check(CLI::Range(1, 65535).description(""))
-      ->type_name("N")
-      ->group(group);
-  app.add_option("--tile", options.tile, "name of an .hgt tile whose file name does not say it")
-      ->type_name("N36E008")
-      ->group(group);
-  app.add_option_function<double>(
-         "--nodata", [&options](double v) { options.nodata = v; },
-         "this value means unknown, whatever the file declares")
-      ->check(takes("number"))
-      ->type_name("VALUE")
-      ->group(group);
-  app.add_flag_callback(
-         "--no-detect", [&options] { options.detect_nodata = false; },
-         "do not look for undeclared -32768, -9999, 32767")
-      ->group(group);
-  app.add_option_function<std::string>(
-         "--height-range",
-         [&options](const std::string& text) { options.heights = parse_height_range(text); },
-         "metres of black and white of a heightmap image")
-      ->type_name("LOW,HIGH")
-      ->group(group);
-  app.add_option_function<double>(
-         "--unknown-grey", [&options](double v) { options.unknown_grey = v; },
-         "grey of an image that means unknown, 0 black to 1 white")
-      ->check(CLI::Range(0.0, 1.0).description(""))
-      ->type_name("GREY")
-      ->group(group);
+void add_write_options(Command& command, WriteOptions& options) {
+  command.heading("Writing");
+  command.option("--format", options.format, "NAME",
+                 "GDAL driver name, HGT or image (chosen by the extension of OUT)");
+  command
+      .option_read_by(
+          "--type",
+          [&options](const std::string& name) {
+            const auto& names = cell_type_names();
+            options.type = CellType(std::ranges::find(names, name) - names.begin());
+          },
+          "TYPE", "Type of the cells (that of IN, where there is one)")
+      .one_of(cell_type_names());
+  command.option("--out-nodata", options.nodata, "VALUE",
+                 "Nodata value that the output declares (that of IN, or a usual one)");
+  command.heading("Options");
 }
 
-namespace {
-
-CLI::Validator mark(std::string name) {
-  return {[](const std::string&) { return std::string(); }, "", std::move(name)};
-}
-
-}  // namespace
-
-CLI::Validator takes(std::string_view kind) { return mark(fmt::format("{}{}", kTakesMark, kind)); }
-
-CLI::Validator one_of(const std::vector<std::string>& names) {
-  return CLI::IsMember(names).description("").name(
-      fmt::format("{}{}", kChoicesMark, fmt::join(names, "|")));
-}
-
-CLI::Validator suggests(const std::vector<std::string>& names) {
-  return mark(fmt::format("{}{}", kChoicesMark, fmt::join(names, "|")));
+void add_set_option(Command& command, std::vector<std::string>& set, const std::string& of) {
+  command.option("-s,--set", set, "KEY=VALUE",
+                 fmt::format("Setting of the {}; may be repeated", of));
 }
 
 std::pair<std::string, std::string> parse_setting(const std::string& text) {
   const auto equals = text.find('=');
   if (equals == std::string::npos || equals == 0)
-    throw std::invalid_argument("set = " + text + "; must be KEY=VALUE, e.g. I=0.4");
+    refuse("--set", text, "KEY=VALUE, for example I=0.4");
   return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
@@ -137,18 +131,18 @@ double parse_number(std::string_view option, const std::string& text, std::strin
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
-    throw std::invalid_argument(fmt::format("{} = {}; must be {}", option, text, must_be));
+    refuse(option, text, must_be);
   return value;
 }
 
 double parse_share(std::string_view option, const std::string& text) {
-  const auto must_be = "a percentage above 0 % and up to 100 %, e.g. 3.4%";
-  if (text.empty() || text.back() != '%')
-    throw std::invalid_argument(fmt::format("{} = {}; must be {}", option, text, must_be));
-  const double percent = parse_number(option, text.substr(0, text.size() - 1), must_be);
-  if (percent <= 0 || percent > 100)
-    throw std::invalid_argument(fmt::format("{} = {}; must be {}", option, text, must_be));
-  return percent / 100;
+  const auto must_be = "a percentage such as 3.4%, or a part such as 0.034 (above 0, up to 1)";
+  const bool percent = text.ends_with('%');
+  std::string number = text.substr(0, text.size() - percent);
+  while (number.ends_with(' ')) number.pop_back();
+  const double share = parse_number(option, number, must_be) / (percent ? 100 : 1);
+  if (share <= 0 || share > 1) refuse(option, text, must_be);
+  return share;
 }
 
 std::string option_of(std::string_view field) {
@@ -182,7 +176,7 @@ void warn_of_outliers(const Dem& dem, Shell& shell) {
     names.push_back(fmt::format("{} m in cell {},{}", o.z, o.col, o.row));
   shell.say(
       "warning: {} known heights lie outside {:.0f} to {:.0f} m and bend the surface around them: "
-      "{}{}; if they mean \"unknown\", --nodata VALUE says so",
+      "{}{}; if they mean nodata, give --nodata VALUE",
       grouped(found.count), found.low_m, found.high_m, fmt::join(names, ", "),
       found.count > names.size() ? ", ..." : "");
 }

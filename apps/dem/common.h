@@ -11,16 +11,12 @@
 #include <utility>
 #include <vector>
 
+#include "cli/command.h"
 #include "dem/dem.h"
 #include "dem/evaluation.h"
 #include "dem/io/rasters.h"
 #include "dem/run.h"
 #include "progress.h"
-
-namespace CLI {
-class App;
-class Validator;
-}  // namespace CLI
 
 namespace dem::app {
 
@@ -34,11 +30,10 @@ class Shell {
   bool json = false, quiet = false, overwrite = false;
   int threads = 0;
   std::string progress = "auto";
-  std::string command;        ///< the command line as it was given
-  std::function<int()> verb;  ///< what the command line chose
+  std::string command;  ///< the command line as it was given
 
   /// Adds the shared options to a verb.
-  void add_options(CLI::App& app);
+  void add_options(Command& command);
 
   /// Threads and progress as asked for; a stop signal cancels whatever runs with it.
   Run run();
@@ -60,25 +55,14 @@ class Shell {
   Progress bar_;
 };
 
-/// A verb with the shared options; `work` runs once the command line is whole.
-CLI::App* add_verb(CLI::App& app, Shell& shell, const std::string& name, const std::string& summary,
-                   const std::string& examples, std::function<int()> work);
-
 /// Options of verbs that read a DEM: --band, --tile, --nodata, --no-detect, --height-range ...
-void add_read_options(CLI::App& app, ReadOptions& options);
+void add_read_options(Command& command, ReadOptions& options);
 
-// Marks on options, for completion, manuals and other programs (see manual/outline.h).
-inline constexpr std::string_view kTakesMark = "takes:", kChoicesMark = "choices:";
+/// Options of verbs that write a raster: --format, --type, --out-nodata.
+void add_write_options(Command& command, WriteOptions& options);
 
-/// The value is a number, crs, raster, vector, points, file or folder, or it is written: "new
-/// raster", "new vector", "new picture", "new file", "new folder".
-CLI::Validator takes(std::string_view kind);
-
-/// The value is one of these names; any other is refused.
-CLI::Validator one_of(const std::vector<std::string>& names);
-
-/// The usual values; others are left to whoever reads them.
-CLI::Validator suggests(const std::vector<std::string>& names);
+/// --set KEY=VALUE; `of`: what has the settings.
+void add_set_option(Command& command, std::vector<std::string>& set, const std::string& of);
 
 /// "mcmd", "mcmd:paper", ... of a table of methods or generators.
 template <class Row>
@@ -94,7 +78,8 @@ std::vector<std::string> names_and_presets(const std::vector<Row>& table) {
 /// "key=value"; throws std::invalid_argument.
 std::pair<std::string, std::string> parse_setting(const std::string& text);
 
-/// "3.4%" -> 0.034, in (0, 1]; throws std::invalid_argument that names the option.
+/// A part of a whole, in (0, 1]: "3.4%", "3.4 %" and "0.034" are one. Throws std::invalid_argument
+/// that names the option.
 double parse_share(std::string_view option, const std::string& text);
 
 /// Throws std::invalid_argument `option = text; must be ...`.

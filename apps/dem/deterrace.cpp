@@ -2,8 +2,6 @@
 
 #include "dem/deterrace.h"
 
-#include <CLI/CLI.hpp>
-
 #include "verbs.h"
 
 namespace dem::app {
@@ -41,27 +39,25 @@ int run_deterrace(const Options& o, Shell& shell) {
 
 }  // namespace
 
-void add_deterrace(CLI::App& app, Shell& shell) {
+void add_deterrace(Program& program, Shell& shell) {
   const auto o = std::make_shared<Options>();
-  auto* verb = add_verb(app, shell, "deterrace", "Take the steps of whole metres off a DEM",
-                        "  dem deterrace N36E008.hgt smooth.tif\n"
-                        "  dem deterrace feet.tif smooth.tif --bound 0.1524",
-                        [o, &shell] { return run_deterrace(*o, shell); });
-  verb->add_option("IN", o->in, "a DEM with rounded heights")
-      ->required()
-      ->check(takes("raster"))
-      ->type_name("");
-  verb->add_option("OUT", o->out, "the same without steps, in float32")
-      ->required()
-      ->check(takes("new raster"))
-      ->type_name("");
-  verb->add_option("-b,--bound", o->deterrace.bound_m, "no cell moves by more, in metres")
-      ->type_name("METRES")
-      ->capture_default_str();
-  verb->add_option("--passes", o->deterrace.passes, "of relaxation on each grid of the pyramid")
-      ->type_name("N")
-      ->capture_default_str();
-  add_read_options(*verb, o->read);
+  Command& verb = program.add("deterrace", kEveryday,
+                              "Remove the terraces of heights that were rounded to whole metres",
+                              "  dem deterrace N36E008.hgt smooth.tif\n"
+                              "  dem deterrace feet.tif smooth.tif --bound 0.1524");
+  verb.work = [o, &shell] { return run_deterrace(*o, shell); };
+  verb.argument("IN", o->in, "DEM with rounded heights, in any format that GDAL opens")
+      .kind("raster")
+      .must_be_given();
+  verb.argument("OUT", o->out, "The DEM without terraces, in float32")
+      .kind("new raster")
+      .must_be_given();
+  verb.option("-b,--bound", o->deterrace.bound_m, "METRES", "Largest change of a cell in metres")
+      .show_default();
+  verb.option("--passes", o->deterrace.passes, "N",
+              "Number of relaxation passes on each grid of the pyramid")
+      .show_default();
+  add_read_options(verb, o->read);
 }
 
 }  // namespace dem::app

@@ -2,7 +2,6 @@
 
 #include "dem/erosion.h"
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <optional>
 
@@ -112,45 +111,36 @@ std::string settings_help() {
   for (const auto& f : describe(fields(defaults)))
     text += fmt::format("  {:<15} {:<9} {}\n", f.name,
                         f.default_text + (f.unit.empty() ? "" : " " + f.unit), f.doc);
-  text.pop_back();
   return text;
 }
 
 }  // namespace
 
-void add_erode(CLI::App& app, Shell& shell) {
+void add_erode(Program& program, Shell& shell) {
   const auto o = std::make_shared<Options>();
-  auto* verb = add_verb(
-      app, shell, "erode", "Erode a DEM by running water and falling rock",
+  Command& verb = program.add(
+      "erode", kSynthesize, "Erode a DEM by running water and falling rock",
       "  dem erode hills.tif eroded.tif\n"
       "  dem erode hills.tif eroded.tif -s steps=2000 -s talus_deg=33\n"
-      "  dem erode N44W072.hgt later.tif --frames film --every 50     # film/step_000050.tif ...\n"
-      "Unknown cells are outside, behind a wall: nothing flows in or out, and they stay "
-      "unknown.\n" +
-          settings_help(),
-      [o, &shell] { return run_erode(*o, shell); });
-  verb->add_option("IN", o->in, "a DEM, anything GDAL opens")
-      ->required()
-      ->check(takes("raster"))
-      ->type_name("");
-  verb->add_option("OUT", o->out, "the eroded DEM, in fractions of metres")
-      ->required()
-      ->check(takes("new raster"))
-      ->type_name("");
-  verb->add_option("-s,--set", o->set, "a setting; may be repeated")
-      ->allow_extra_args(false)
-      ->type_name("KEY=VALUE");
-  verb->add_option("--water", o->water, "also write the depth of the water at the end")
-      ->check(takes("new raster"))
-      ->type_name("FILE");
-  verb->add_option("--frames", o->frames, "a folder for the terrain on the way")
-      ->check(takes("new folder"))
-      ->type_name("DIR");
-  verb->add_option("--every", o->every, "steps from one frame to the next")
-      ->check(CLI::Range(1, 1000000).description(""))
-      ->type_name("N")
-      ->capture_default_str();
-  add_read_options(*verb, o->read);
+      "  dem erode N44W072.hgt later.tif --frames film --every 50     # film/step_000050.tif ...");
+  verb.notes =
+      "Nodata cells act as a wall: nothing flows in or out of them, and they stay nodata.\n" +
+      settings_help();
+  verb.work = [o, &shell] { return run_erode(*o, shell); };
+  verb.argument("IN", o->in, "DEM, in any format that GDAL opens").kind("raster").must_be_given();
+  verb.argument("OUT", o->out, "The eroded DEM, in float32 where the format allows it")
+      .kind("new raster")
+      .must_be_given();
+  add_set_option(verb, o->set, "erosion (see below)");
+  verb.option("--water", o->water, "FILE", "Also write the depth of the water after the last step")
+      .kind("new raster");
+  verb.option("--frames", o->frames, "DIR",
+              "Also write the terrain after every few steps into a folder")
+      .kind("new folder");
+  verb.option("--every", o->every, "N", "Number of steps from one frame to the next")
+      .within(1, 1000000)
+      .show_default();
+  add_read_options(verb, o->read);
 }
 
 }  // namespace dem::app

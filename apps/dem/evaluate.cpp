@@ -1,6 +1,5 @@
 // dem evaluate: how good a reconstruction is.
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 
@@ -35,14 +34,13 @@ Expectation parse_expectation(const std::string& text) {
   const auto measure = std::ranges::find_if(
       measures, [&](const Measure& m) { return text.substr(0, at) == m.name; });
   if (at == std::string::npos || measure == std::end(measures))
-    throw std::invalid_argument(
-        "expect = " + text +
-        "; must be like rmse<20, with one of rmse, mae, bias, nmad, le90, max, "
-        "slope_rmse and one of <, <=, >, >=");
+    refuse("--expect", text,
+           "like rmse<20, with one of rmse, mae, bias, nmad, le90, max, slope_rmse and one of <, "
+           "<=, >, >=");
   const bool or_equal = text.substr(at + 1).starts_with("=");
   return {
       text, &*measure, text[at] == '<', or_equal,
-      parse_number("expect", text.substr(at + 1 + or_equal), "a measure, < or >, and a number")};
+      parse_number("--expect", text.substr(at + 1 + or_equal), "a measure, < or >, and a number")};
 }
 
 /// A message of evaluate_dem, with the file that it speaks of.
@@ -185,36 +183,31 @@ int evaluate(const Options& o, Shell& shell) {
 
 }  // namespace
 
-void add_evaluate(CLI::App& app, Shell& shell) {
+void add_evaluate(Program& program, Shell& shell) {
   const auto o = std::make_shared<Options>();
-  auto* verb =
-      add_verb(app, shell, "evaluate", "How near a reconstruction comes to the truth",
-               "  dem evaluate whole.tif filled.tif\n"
-               "  dem evaluate whole.tif filled.tif --known sparse.tif   # the filled cells alone\n"
-               "  dem evaluate whole.tif filled.tif --expect 'rmse<20' --expect 'bias<=1'\n"
-               "  dem evaluate whole.tif filled.tif --known sparse.tif --report errors.html",
-               [o, &shell] { return evaluate(*o, shell); });
-  verb->add_option("TRUTH", o->truth, "the DEM as it should be")
-      ->required()
-      ->check(takes("raster"))
-      ->type_name("");
-  verb->add_option("GOT", o->got, "the reconstruction, of the same size")
-      ->required()
-      ->check(takes("raster"))
-      ->type_name("");
-  verb->add_option("-k,--known", o->known, "what GOT was made from: scores its unknown cells too")
-      ->check(takes("raster"))
-      ->type_name("SAMPLED");
-  verb->add_option("--sigma", o->sigma,
-                   "what `dem fill --sigma` wrote: how well it foretold the errors")
-      ->check(takes("raster"))
-      ->type_name("FILE");
-  add_report_option(*verb, o->report);
-  verb->add_option("-e,--expect", o->expect,
-                   "exit 4 unless it holds; of the filled cells if --known")
-      ->allow_extra_args(false)
-      ->type_name("'rmse<20'");
-  add_read_options(*verb, o->read);
+  Command& verb =
+      program.add("evaluate", kMeasure, "Compare a DEM with a reference",
+                  "  dem evaluate whole.tif filled.tif\n"
+                  "  dem evaluate whole.tif filled.tif --known sparse.tif   # filled cells apart\n"
+                  "  dem evaluate whole.tif filled.tif --expect 'rmse<20' --expect 'bias<=1'\n"
+                  "  dem evaluate whole.tif filled.tif --known sparse.tif --report errors.html");
+  verb.work = [o, &shell] { return evaluate(*o, shell); };
+  verb.argument("TRUTH", o->truth, "Reference DEM").kind("raster").must_be_given();
+  verb.argument("GOT", o->got, "DEM to evaluate, with as many columns and rows as TRUTH")
+      .kind("raster")
+      .must_be_given();
+  verb.option("-k,--known", o->known, "SAMPLED",
+              "DEM that GOT was made from; its nodata cells are also evaluated apart")
+      .kind("raster");
+  verb.option(
+          "--sigma", o->sigma, "FILE",
+          "Standard errors written by `dem fill --sigma`, to be checked against the real errors")
+      .kind("raster");
+  add_report_option(verb, o->report);
+  verb.option("-e,--expect", o->expect, "'rmse<20'",
+              "Condition on the errors (of the filled cells if --known is given); exit code 4 when "
+              "it does not hold");
+  add_read_options(verb, o->read);
 }
 
 }  // namespace dem::app

@@ -1,6 +1,5 @@
 // dem generate: terrain from nothing, or from an image.
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -34,29 +33,27 @@ std::pair<double, double> parse_pair(std::string_view option, const std::string&
 
 Size parse_size(const std::string& text) {
   const auto must_be = "N or WxH, whole numbers from 1 to 1000000, e.g. 1025 or 800x600";
-  const auto [cols, rows] = parse_pair("size", text, 'x', must_be);
+  const auto [cols, rows] = parse_pair("--size", text, 'x', must_be);
   for (const double side : {cols, rows})
-    if (side < 1 || side > 1e6 || side != std::floor(side))
-      throw std::invalid_argument(fmt::format("size = {}; must be {}", text, must_be));
+    if (side < 1 || side > 1e6 || side != std::floor(side)) refuse("--size", text, must_be);
   return {int(cols), int(rows)};
 }
 
 Spacing parse_cell(const std::string& text) {
   const auto must_be = "METRES or DXxDY, above 0, e.g. 30";
-  const auto [dx, dy] = parse_pair("cell", text, 'x', must_be);
-  if (!(dx > 0) || !(dy > 0))
-    throw std::invalid_argument(fmt::format("cell = {}; must be {}", text, must_be));
+  const auto [dx, dy] = parse_pair("--cell", text, 'x', must_be);
+  if (!(dx > 0) || !(dy > 0)) refuse("--cell", text, must_be);
   return {dx, dy};
 }
 
 /// The whole Earth, which leaves nothing to choose but the size.
 Canvas globe(const Options& o, Size size) {
   for (const auto& [option, text] :
-       {std::pair{"cell", o.cell}, {"crs", o.crs}, {"origin", o.origin}})
+       {std::pair{"--cell", o.cell}, {"--crs", o.crs}, {"--origin", o.origin}})
     if (!text.empty())
       throw std::invalid_argument(
-          fmt::format("{} = {}; {} makes the whole Earth in EPSG:4326, give --size alone", option,
-                      text, o.name));
+          fmt::format("{} = {}; {} makes the whole Earth in EPSG:4326, so only --size is taken",
+                      option, text, o.name));
   return globe_canvas(size);
 }
 
@@ -64,9 +61,9 @@ Canvas globe(const Options& o, Size size) {
 Canvas plane(const Options& o, Size size) {
   const auto must_be = "X,Y of the north-west cell in the CRS's units, e.g. 305000,4910000";
   if (!o.origin.empty() && o.origin.find(',') == std::string::npos)
-    throw std::invalid_argument(fmt::format("origin = {}; must be {}", o.origin, must_be));
+    refuse("--origin", o.origin, must_be);
   const auto [x, y] =
-      o.origin.empty() ? std::pair{0.0, 0.0} : parse_pair("origin", o.origin, ',', must_be);
+      o.origin.empty() ? std::pair{0.0, 0.0} : parse_pair("--origin", o.origin, ',', must_be);
   return plane_canvas(size, parse_cell(o.cell.empty() ? "30" : o.cell), x, y, o.crs);
 }
 
@@ -92,8 +89,9 @@ Raster<float> read_image(const Options& o, const Generator& generator, const Run
 Size canvas_size(const Options& o, const Generator& generator, const Raster<float>& image) {
   if (!image.empty()) {
     if (!o.size.empty() && parse_size(o.size) != image.size())
-      throw std::invalid_argument(fmt::format("size = {}; the image has {} x {}, leave --size out",
-                                              o.size, image.cols(), image.rows()));
+      throw std::invalid_argument(
+          fmt::format("--size = {}; the image has {} x {} cells, so leave --size out", o.size,
+                      image.cols(), image.rows()));
     return image.size();
   }
   if (!o.size.empty()) return parse_size(o.size);
@@ -106,8 +104,8 @@ ChosenGenerator choose(const Options& o) {
   if (o.seed) {
     const auto& fields = chosen.generator->fields;
     if (std::ranges::find(fields, "seed", &FieldInfo::name) == fields.end())
-      throw std::invalid_argument("seed: generator " + chosen.generator->name +
-                                  " takes no random numbers");
+      throw std::invalid_argument("--seed: generator " + chosen.generator->name +
+                                  " uses no random numbers");
     chosen.settings.emplace_back("seed", std::to_string(*o.seed));
   }
   return chosen;
@@ -173,49 +171,39 @@ std::string generator_names() {
 
 }  // namespace
 
-void add_generate(CLI::App& app, Shell& shell) {
+void add_generate(Program& program, Shell& shell) {
   const auto o = std::make_shared<Options>();
-  auto* verb = add_verb(
-      app, shell, "generate", "Terrain from nothing, or from an image",
+  Command& verb = program.add(
+      "generate", kSynthesize, "Make terrain from a formula, an image or drawn lines",
       "  dem generate noise:foothills range.tif --size 2049 --cell 10 --seed 7\n"
       "  dem generate noise part.tif --size 512 --crs EPSG:32619 --origin 305000,4910000 -s H=0.9\n"
       "  dem generate sketch:wall drawing.png wall.tif --median 2\n"
-      "  dem generate skeleton lines.gpkg land.tif --size 800 --origin 305000,4910000\n"
-      "Names: " +
-          generator_names() + "\n(their settings: dem methods NAME)",
-      [o, &shell] { return generate(*o, shell); });
-  verb->add_option("NAME", o->name, "what to make, NAME or NAME:PRESET")
-      ->required()
-      ->check(suggests(names_and_presets(generators())))
-      ->type_name("");
-  verb->add_option("FILES", o->files,
-                   "[IMAGE] OUT: the DEM to write, and before it the image or vector\n"
-                   "layer that some generators start from")
-      ->required()
-      ->check(takes("new raster"))
-      ->type_name("");
-  verb->add_option("--size", o->size, "columns and rows; else 1025, or the image's")
-      ->type_name("N|WxH");
-  verb->add_option("--cell", o->cell, "size of a cell in metres; else 30")->type_name("M|DXxDY");
-  verb->add_option("--crs", o->crs, "coordinate system, e.g. EPSG:32619")
-      ->check(takes("crs"))
-      ->type_name("NAME");
-  verb->add_option("--origin", o->origin,
-                   "the north-west cell's centre in the CRS's units; else 0,0")
-      ->type_name("X,Y");
-  verb->add_option("--seed", o->seed, "another seed, another terrain; the same on every machine")
-      ->check([](const std::string& text) {
-        return text.starts_with('-') ? text + "; must be a whole number from 0 up" : std::string();
-      })
-      ->type_name("N");
-  verb->add_option("-s,--set", o->set, "a setting of the generator; may be repeated")
-      ->allow_extra_args(false)
-      ->type_name("KEY=VALUE");
-  verb->add_option("--median", o->median, "passes of a 5 x 5 median over the result; else none")
-      ->check(CLI::Range(0, 100).description(""))
-      ->type_name("N");
-  verb->add_option("--format", o->format, "GDAL driver name, HGT or image; else by extension")
-      ->type_name("NAME");
+      "  dem generate skeleton lines.gpkg land.tif --size 800 --origin 305000,4910000");
+  verb.notes = "Names: " + generator_names() + "\n(their settings: dem methods NAME)\n";
+  verb.work = [o, &shell] { return generate(*o, shell); };
+  verb.argument("NAME", o->name, "Name of the generator, NAME or NAME:PRESET")
+      .suggest(names_and_presets(generators()))
+      .must_be_given();
+  verb.argument("FILES", o->files,
+                "[IMAGE] OUT: the DEM to write, and before it the image or vector layer that some "
+                "generators start from")
+      .kind("new raster")
+      .must_be_given();
+  verb.option("--size", o->size, "N|WxH",
+              "Number of columns and rows (1025, or the size of the image)");
+  verb.option("--cell", o->cell, "M|DXxDY", "Cell size in metres").show_default("30");
+  verb.option("--crs", o->crs, "NAME", "Coordinate system, for example EPSG:32619").kind("crs");
+  verb.option("--origin", o->origin, "X,Y", "Centre of the north-west cell in the units of the CRS")
+      .show_default("0,0");
+  verb.option("--seed", o->seed, "N",
+              "Random seed; the same seed gives the same terrain on every machine");
+  add_set_option(verb, o->set, "generator");
+  verb.option("--median", o->median, "N",
+              "Number of passes of a 5 x 5 median filter over the result")
+      .within(0, 100)
+      .show_default();
+  verb.option("--format", o->format, "NAME",
+              "GDAL driver name, HGT or image (chosen by the extension of OUT)");
 }
 
 }  // namespace dem::app

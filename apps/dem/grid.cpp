@@ -1,6 +1,5 @@
 // dem grid: scattered points to a DEM.
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <optional>
@@ -19,7 +18,6 @@ struct Options {
   std::string points, out, sigma, breaklines;
   std::string like, bounds, cell;
   std::string method;  // "": chosen by what the points are
-  std::string delimiter;
   std::vector<std::string> set;
   bool nodes = false, snap = false, no_fill = false, contours = false;
   PointReadOptions read;
@@ -68,7 +66,7 @@ char parse_delimiter(const std::string& text) {
   if (text == "tab" || text == "\\t") return '\t';
   if (text == "space") return ' ';
   if (text.size() == 1) return text[0];
-  throw std::invalid_argument("delimiter = " + text + "; must be one character, tab or space");
+  refuse("--delimiter", text, "one character, tab or space");
 }
 
 void append(Points& all, const Points& part) {
@@ -330,7 +328,6 @@ Gridded fill(const Options& o, const Read& read, const ChosenMethod& method, con
 
 int grid(Options& o, Shell& shell) {
   check_options(o);
-  if (!o.delimiter.empty()) o.read.delimiter = parse_delimiter(o.delimiter);
   o.bin.plane = !o.snap;
   if (o.method.empty()) o.method = o.contours ? default_contour_method() : default_fill_method();
   const ChosenMethod method = choose(o);
@@ -374,111 +371,91 @@ int grid(Options& o, Shell& shell) {
   return kDone;
 }
 
-void add_point_options(CLI::App& verb, Options& o) {
-  const char* group = "Reading points";
+void add_point_options(Command& verb, Options& o) {
+  verb.heading("Reading points");
   const auto field = [&](const char* name, std::string& value, const char* doc) {
-    verb.add_option(name, value, doc)->type_name("NAME")->group(group);
+    verb.option(name, value, "NAME", doc);
   };
-  field("--x-field", o.read.x_field, "column of x, by name or number from 1; else a usual name");
-  field("--y-field", o.read.y_field, "column of y");
-  field("--z-field", o.read.z_field, "column or attribute of the elevation in metres");
-  field("--sigma-field", o.read.sigma_field, "column of the elevation's standard deviation");
-  field("--weight-field", o.read.weight_field, "column of weights");
-  field("--position-field", o.read.position_field, "column of MGRS, UTM or DMS positions");
-  verb.add_option("--delimiter", o.delimiter, "between columns; else the first that is there")
-      ->type_name("CHAR")
-      ->group(group);
-  verb.add_option("--layer", o.read.layer, "layer of a vector file with several")
-      ->type_name("NAME")
-      ->group(group);
-  verb.add_option("--class", o.read.classes, "LAS classes to take, e.g. 2,8; else all")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->check(CLI::Range(0, 255).description(""))
-      ->type_name("N,N")
-      ->group(group);
-  verb.add_option_function<double>(
-          "--nodata", [&o](double v) { o.read.nodata = v; }, "an elevation that means none")
-      ->type_name("VALUE")
-      ->group(group);
-  verb.add_option("--crs", o.read.crs, "what x and y are in: EPSG:25832, PROJ, WKT")
-      ->check(takes("crs"))
-      ->type_name("CRS")
-      ->group(group);
+  field("--x-field", o.read.x_field,
+        "Column of x, by its name or its number from 1 (found by its usual names)");
+  field("--y-field", o.read.y_field, "Column of y");
+  field("--z-field", o.read.z_field, "Column or attribute of the elevation in metres");
+  field("--sigma-field", o.read.sigma_field, "Column of the standard error of the elevation");
+  field("--weight-field", o.read.weight_field, "Column of weights");
+  field("--position-field", o.read.position_field, "Column of MGRS, UTM or DMS positions");
+  verb.option_read_by(
+      "--delimiter", [&o](const std::string& text) { o.read.delimiter = parse_delimiter(text); },
+      "CHAR", "Character between columns, tab or space (found in the first line)");
+  verb.option("--layer", o.read.layer, "NAME", "Layer of a vector file that has several layers");
+  verb.option("--class", o.read.classes, "N,N",
+              "LAS classes to read, for example 2,8 (all of them); may be repeated")
+      .by_commas()
+      .within(0, 255);
+  verb.option("--nodata", o.read.nodata, "VALUE", "Elevation that means nodata");
+  verb.option("--crs", o.read.crs, "CRS",
+              "Coordinate system of the points, for example EPSG:25832; PROJ strings and WKT too")
+      .kind("crs");
 }
 
-void add_lattice_options(CLI::App& verb, Options& o) {
-  const char* group = "Lattice (else from the density of the points)";
-  verb.add_option("--like", o.like, "the lattice of this raster")
-      ->check(takes("raster"))
-      ->type_name("RASTER")
-      ->group(group);
-  verb.add_option("--bounds", o.bounds, "outer edges of the cells")
-      ->type_name("W,S,E,N")
-      ->group(group);
-  verb.add_option("--cell", o.cell, "size of a cell with its unit: 30m, 1s, 0.001deg")
-      ->type_name("SIZE")
-      ->group(group);
-  verb.add_flag("--nodes", o.nodes, "bounds are the centres of the outer cells")->group(group);
-  verb.add_option("--to-crs", o.read.to_crs, "coordinate system of the lattice; else the points'")
-      ->check(takes("crs"))
-      ->type_name("CRS")
-      ->group(group);
+void add_lattice_options(Command& verb, Options& o) {
+  verb.heading("Lattice (chosen by the density of the points)");
+  verb.option("--like", o.like, "RASTER", "Use the lattice of this raster").kind("raster");
+  verb.option("--bounds", o.bounds, "W,S,E,N", "Outer edges of the cells");
+  verb.option("--cell", o.cell, "SIZE", "Cell size with its unit: 30m, 1s (arc second), 0.001deg");
+  verb.flag("--nodes", o.nodes, "--bounds are the centres of the outer cells");
+  verb.option("--to-crs", o.read.to_crs, "CRS",
+              "Coordinate system of the lattice (that of the points)")
+      .kind("crs");
 }
 
 }  // namespace
 
-void add_grid(CLI::App& app, Shell& shell) {
+void add_grid(Program& program, Shell& shell) {
   const auto o = std::make_shared<Options>();
-  auto* verb = add_verb(
-      app, shell, "grid", "Scattered points to a DEM; the surface passes through them",
-      "  dem grid soundings.csv sea.tif                        # cells from the points' density\n"
+  Command& verb = program.add(
+      "grid", kEveryday, "Make a DEM from scattered points or contour lines",
+      "  dem grid soundings.csv sea.tif              # cell size from the density of the points\n"
       "  dem grid map.gpkg dem.tif --contours --cell 10m --z-field height\n"
       "  dem grid lidar.las ground.tif --class 2 --cell 1m --combine median\n"
-      "  zcat p.xyz.gz | dem grid - dem.tif --crs EPSG:4326 --to-crs EPSG:32632 --cell 30m",
-      [o, &shell] { return grid(*o, shell); });
-  verb->add_option("POINTS", o->points, "CSV, XYZ, TSV (-: standard input), LAS, any vector format")
-      ->required()
-      ->check(takes("points"))
-      ->type_name("");
-  verb->add_option("OUT", o->out, "the DEM; the format follows the extension")
-      ->required()
-      ->check(takes("new raster"))
-      ->type_name("");
-  verb->add_option("-m,--method", o->method,
-                   "how to fill between points (see dem methods); spline, or contours")
-      ->check(suggests(names_and_presets(all_fill_methods())))
-      ->type_name("NAME");
-  verb->add_flag("--contours", o->contours, "POINTS are contour lines: no terraces between them");
-  verb->add_option("-s,--set", o->set, "a setting of the method; may be repeated")
-      ->allow_extra_args(false)
-      ->type_name("KEY=VALUE");
-  verb->add_option("--breaklines", o->breaklines,
-                   "lines and polygons across which the surface may jump: cliffs, dams")
-      ->check(takes("vector"))
-      ->type_name("LAYER");
-  verb->add_option_function<std::string>(
-          "--combine", [o](const std::string& name) { field(o->bin, "combine").set(name); },
-          "several points in a cell: mean, min, max, median; default mean")
-      ->check(one_of(field(o->bin, "combine").choices()))
-      ->type_name("HOW");
-  verb->add_option("--reject-outliers", o->bin.outliers,
-                   "leave out cells so many spreads off their surroundings, e.g. 10")
-      ->check(takes("number"))
-      ->check(CLI::Range(1.0, 1e9).description(""))
-      ->type_name("TIMES");
-  verb->add_flag("--snap", o->snap, "take points as lying on their cell's centre");
-  verb->add_option("--passes", o->gridding.passes,
-                   "so often the surface is corrected to meet points between cells")
-      ->check(CLI::Range(0, 100).description(""))
-      ->type_name("N")
-      ->capture_default_str();
-  verb->add_flag("--no-fill", o->no_fill, "only the cells that hold points; others are unknown");
-  verb->add_option("--sigma", o->sigma, "also write the standard deviation of each cell, in metres")
-      ->check(takes("new raster"))
-      ->type_name("FILE");
-  add_lattice_options(*verb, *o);
-  add_point_options(*verb, *o);
+      "  zcat p.xyz.gz | dem grid - dem.tif --crs EPSG:4326 --to-crs EPSG:32632 --cell 30m");
+  verb.work = [o, &shell] { return grid(*o, shell); };
+  verb.argument("POINTS", o->points,
+                "Points: CSV, XYZ, TSV (- for standard input), LAS or any vector format of OGR")
+      .kind("points")
+      .must_be_given();
+  verb.argument("OUT", o->out, "The DEM, in the format of its extension")
+      .kind("new raster")
+      .must_be_given();
+  verb.option(
+          "-m,--method", o->method, "NAME",
+          "Fill method between the points, see `dem methods` (spline; contours with --contours)")
+      .suggest(names_and_presets(all_fill_methods()));
+  verb.flag("--contours", o->contours,
+            "POINTS are contour lines, and no terraces may appear between them");
+  add_set_option(verb, o->set, "method");
+  verb.option("--breaklines", o->breaklines, "LAYER",
+              "Lines and polygons across which the surface may jump, such as cliffs and dams")
+      .kind("vector");
+  verb.option_read_by(
+          "--combine", [o](const std::string& name) { field(o->bin, "combine").set(name); }, "HOW",
+          "How the points of one cell become one height")
+      .one_of(field(o->bin, "combine").choices())
+      .show_default("mean");
+  verb.option("--reject-outliers", o->bin.outliers, "TIMES",
+              "Drop cells more than TIMES robust standard deviations from their neighbours, for "
+              "example 10")
+      .within(1, 1e9);
+  verb.flag("--snap", o->snap, "Move each point to the centre of its cell");
+  verb.option("--passes", o->gridding.passes, "N",
+              "Number of correction passes that pull the surface to points off cell centres")
+      .within(0, 100)
+      .show_default();
+  verb.flag("--no-fill", o->no_fill,
+            "Write only the cells that hold points; all others are nodata");
+  verb.option("--sigma", o->sigma, "FILE", "Also write the standard error of each cell in metres")
+      .kind("new raster");
+  add_lattice_options(verb, *o);
+  add_point_options(verb, *o);
 }
 
 }  // namespace dem::app

@@ -1,6 +1,5 @@
 // dem info: what a file holds.
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 
@@ -49,11 +48,7 @@ Facts gather(const DemFile& file) {
   return facts;
 }
 
-const char* type_name(CellType type) {
-  constexpr const char* names[] = {"int8",  "uint8",  "int16",   "uint16",
-                                   "int32", "uint32", "float32", "float64"};
-  return names[int(type)];
-}
+const std::string& type_name(CellType type) { return cell_type_names()[std::size_t(type)]; }
 
 Json as_json(const Facts& f) {
   const auto& source = f.file.source;
@@ -144,7 +139,8 @@ int info(const Options& options, Shell& shell) {
       write_holes(options.holes, find_holes(file.dem, facts.rows), file.dem.known, file.dem.ref,
                   shell.overwrite);
     files.push_back(as_json(facts));
-    text += (i > 0 ? "\n" : "") + as_text(facts);
+    if (i > 0) text += '\n';
+    text += as_text(facts);
   }
   shell.print({{"files", files}}, text);
   return kDone;
@@ -152,24 +148,22 @@ int info(const Options& options, Shell& shell) {
 
 }  // namespace
 
-void add_info(CLI::App& app, Shell& shell) {
+void add_info(Program& program, Shell& shell) {
   const auto options = std::make_shared<Options>();
-  auto* verb =
-      add_verb(app, shell, "info", "What a file holds: size, cells, no-data, voids, heights",
-               "  dem info N36E008.hgt\n"
-               "  dem info a.tif b.tif --json\n"
-               "  dem info N36E008.hgt --holes voids.gpkg   # the voids as polygons, with sizes\n"
-               "  dem info sea.tif --nodata 0          # how many voids, if 0 meant unknown",
-               [options, &shell] { return info(*options, shell); });
-  verb->add_option("FILE", options->files, "elevation files, anything GDAL opens")
-      ->required()
-      ->check(takes("raster"))
-      ->type_name("");
-  verb->add_option("--holes", options->holes,
-                   "also write the voids as polygons with area, rim relief ...")
-      ->check(takes("new vector"))
-      ->type_name("FILE.gpkg");
-  add_read_options(*verb, options->read);
+  Command& verb = program.add(
+      "info", kEveryday, "Show what a file holds: size, cells, nodata, voids, heights",
+      "  dem info N36E008.hgt\n"
+      "  dem info a.tif b.tif --json\n"
+      "  dem info N36E008.hgt --holes voids.gpkg   # the voids as polygons, with their sizes\n"
+      "  dem info sea.tif --nodata 0               # what the voids are if 0 means nodata");
+  verb.work = [options, &shell] { return info(*options, shell); };
+  verb.argument("FILE", options->files, "Elevation files, in any format that GDAL opens")
+      .kind("raster")
+      .must_be_given();
+  verb.option("--holes", options->holes, "FILE.gpkg",
+              "Also write the voids as polygons with their area, the relief of their edge and more")
+      .kind("new vector");
+  add_read_options(verb, options->read);
 }
 
 }  // namespace dem::app

@@ -1,66 +1,28 @@
-// The command line `dem`: parse, choose a verb, turn errors into one line and an exit code.
+// The command line `dem`: choose a verb, run it, turn errors into one line and an exit code.
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <new>
-#include <numeric>
 
+#include "cli/help.h"
+#include "cli/parser.h"
 #include "verbs.h"
 
 namespace dem::app {
 namespace {
 
-const char* kExamples = R"(
-Examples:
-  dem info N36E008.hgt                          what a file holds, and its voids
-  dem fill N36E008.hgt filled.tif               fill the voids
-  dem sample whole.tif sparse.tif --keep 3.4%   make a problem whose answer is known
-  dem evaluate whole.tif filled.tif --known sparse.tif
-  dem VERB --help                               options and examples of one verb
+const char* kExamples =
+    "  dem info N36E008.hgt                          what a file holds, and its voids\n"
+    "  dem fill N36E008.hgt filled.tif               fill the voids\n"
+    "  dem sample whole.tif sparse.tif --keep 3.4%   make a test problem whose answer is known\n"
+    "  dem evaluate whole.tif filled.tif --known sparse.tif\n"
+    "  dem VERB --help                               options and examples of one verb\n";
 
-Exit codes: 0 done, 1 usage, 2 a file could not be read or written, 3 cells were left unfilled,
-4 a check failed, 5 interrupted.)";
-
-/// How many letters must change to make one word of the other (Levenshtein).
-std::size_t distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t swap = diagonal + (a[i - 1] != b[j - 1]);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, swap});
-    }
-  }
-  return row.back();
-}
-
-/// "; did you mean X?" for the name nearest to `word`, or "" when none is near.
-std::string suggestion(std::string_view word, const std::vector<std::string>& names) {
-  std::string best;
-  std::size_t least = std::max<std::size_t>(2, word.size() / 2) + 1;
-  for (const auto& name : names)
-    if (const auto d = distance(word, name); d < least) least = d, best = name;
-  return best.empty() ? "" : "; did you mean " + best + "?";
-}
-
-std::vector<std::string> option_names(const CLI::App& verb) {
-  std::vector<std::string> names;
-  for (const auto* option : verb.get_options())
-    for (const auto& name : option->get_lnames()) names.push_back("--" + name);
-  return names;
-}
-
-std::vector<std::string> verb_names(const CLI::App& app) {
-  std::vector<std::string> names;
-  for (const auto* verb : app.get_subcommands({})) names.push_back(verb->get_name());
-  return names;
-}
+const char* kExitCodes =
+    "Exit codes: 0 done, 1 wrong usage, 2 a file could not be read or written, 3 cells are left\n"
+    "unfilled, 4 a check failed, 5 interrupted.\n";
 
 int fail(Exit code, std::string message) {
   std::ranges::replace(message, '\n', ' ');
@@ -68,47 +30,29 @@ int fail(Exit code, std::string message) {
   return code;
 }
 
-/// What CLI11 found wrong, in one line with a hint.
-int fail_usage(const CLI::App& app, const CLI::ParseError& error) {
-  const auto chosen = app.get_subcommands();
-  const CLI::App& where = chosen.empty() ? app : *chosen.front();
-  const std::string command = chosen.empty() ? "dem" : "dem " + where.get_name();
-  std::string what = error.what();
-  if (dynamic_cast<const CLI::ExtrasError*>(&error)) {
-    const auto extras = app.remaining(true);
-    const std::string word = extras.empty() ? "" : extras.front();
-    if (word.starts_with("-"))
-      what = "unknown option " + word + suggestion(word, option_names(where));
-    else
-      what = "unexpected argument " + word;
-  }
-  return fail(kUsage, fmt::format("{} (see `{} --help`)", what, command));
-}
-
 /// An option before the verb that the program itself does not have.
-int fail_early_option(const CLI::App& app, const std::string& word) {
-  for (const auto* verb : app.get_subcommands({}))
-    if (verb->get_option_no_throw(word))
-      return fail(kUsage,
-                  fmt::format("{0} belongs after the verb, like `dem {1} {0}` (see `dem --help`)",
-                              word, verb->get_name()));
+int fail_early_option(Program& program, const std::string& word) {
+  for (Command& verb : program.commands)
+    if (verb.find(word))
+      return fail(kUsage, fmt::format("{0} comes after the verb, as in `dem {1} {0}` (see `dem "
+                                      "--help`)",
+                                      word, verb.name));
   return fail(kUsage, fmt::format("unknown option {}{} (see `dem --help`)", word,
-                                  suggestion(word, option_names(app))));
+                                  suggestion(word, {"--help", "--version"})));
 }
 
-int fail_unknown_verb(const CLI::App& app, const std::string& word) {
-  const auto names = verb_names(app);
+int fail_unknown_verb(const Program& program, const std::string& word) {
+  const auto names = program.names();
   return fail(kUsage, fmt::format("unknown verb {}{} (verbs: {})", word, suggestion(word, names),
                                   fmt::join(names, ", ")));
 }
 
 /// The command line as a shell takes it: words with spaces and other signs are quoted.
-std::string command_line(int argc, char** argv) {
+std::string command_line(const std::vector<std::string>& words) {
   constexpr std::string_view plain =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_@%+=:,./-";
   std::string line = "dem";
-  for (int i = 1; i < argc; ++i) {
-    const std::string_view word = argv[i];
+  for (const std::string& word : words) {
     line += ' ';
     if (!word.empty() && word.find_first_not_of(plain) == word.npos) {
       line += word;
@@ -124,13 +68,19 @@ std::string command_line(int argc, char** argv) {
 /// `code`, unless what was printed could not be written.
 int flushed(int code) {
   if (std::fflush(stdout) == 0) return code;
-  return fail(kFile, fmt::format("stdout: {}", std::strerror(errno)));
+  return fail(kFile, fmt::format("standard output: {}", std::strerror(errno)));
 }
 
-/// Runs the chosen verb; each kind of error has its exit code.
-int run_verb(Shell& shell) {
+int print(const std::string& text) {
+  fmt::print("{}", text);
+  return flushed(kDone);
+}
+
+/// Reads the options of the verb and runs it; each kind of error has its exit code.
+int run_verb(Command& verb, const std::vector<std::string>& words, Shell& shell) {
   try {
-    return flushed(shell.verb());
+    if (parse(verb, words) == Parsed::help_wanted) return print(help_text(verb));
+    return flushed(verb.work());
   } catch (const Cancelled&) {
     shell.clear_bar();
     return fail(kInterrupted, "interrupted; no output was changed");
@@ -151,56 +101,44 @@ int run_verb(Shell& shell) {
   }
 }
 
-int run(int argc, char** argv) {
+int run(const std::vector<std::string>& words) {
   install_signal_handlers();
 
-  CLI::App app("Reconstruction of digital elevation models", "dem");
-  app.set_version_flag("--version", std::string("dem ") + DEM_VERSION);
-  app.footer(kExamples);
-  app.get_formatter()->column_width(31);
-  app.require_subcommand(1);
+  Program program{"Reconstruction of digital elevation models", kExamples, kExitCodes, {}};
   Shell shell;
-  shell.command = command_line(argc, argv);
-  add_info(app, shell);
-  add_sample(app, shell);
-  add_fill(app, shell);
-  add_grid(app, shell);
-  add_check(app, shell);
-  add_supersample(app, shell);
-  add_deterrace(app, shell);
-  add_evaluate(app, shell);
-  add_curve(app, shell);
-  add_reproduce(app, shell);
-  add_generate(app, shell);
-  add_erode(app, shell);
-  add_render(app, shell);
-  add_methods(app, shell);
-  add_manual(app, shell);
-  add_completion(app, shell);
-  for (auto* verb : app.get_subcommands({})) shell.add_options(*verb);
+  shell.command = command_line(words);
+  add_info(program, shell);
+  add_fill(program, shell);
+  add_grid(program, shell);
+  add_supersample(program, shell);
+  add_deterrace(program, shell);
+  add_render(program, shell);
+  add_check(program, shell);
+  add_sample(program, shell);
+  add_evaluate(program, shell);
+  add_curve(program, shell);
+  add_reproduce(program, shell);
+  add_generate(program, shell);
+  add_erode(program, shell);
+  add_methods(program, shell);
+  add_manual(program, shell);
+  add_completion(program, shell);
+  for (Command& verb : program.commands) shell.add_options(verb);
 
-  if (argc == 1) {
-    fmt::print(stderr, "{}", app.help());
+  if (words.empty()) {
+    fmt::print(stderr, "{}", help_text(program));
     return kUsage;
   }
-  const std::string first = argv[1];
-  if (first.starts_with("-") && !app.get_option_no_throw(first))
-    return fail_early_option(app, first);
-  if (!first.starts_with("-") && std::ranges::count(verb_names(app), first) == 0)
-    return fail_unknown_verb(app, first);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& help_or_version) {
-    return flushed(app.exit(help_or_version));
-  } catch (const CLI::ParseError& error) {
-    return fail_usage(app, error);
-  } catch (const std::invalid_argument& error) {
-    return fail(kUsage, error.what());
-  }
-  return run_verb(shell);
+  const std::string& first = words.front();
+  if (first == "--help" || first == "-h") return print(help_text(program));
+  if (first == "--version") return print(fmt::format("dem {}\n", DEM_VERSION));
+  if (first.starts_with("-")) return fail_early_option(program, first);
+  const auto verb = std::ranges::find(program.commands, first, &Command::name);
+  if (verb == program.commands.end()) return fail_unknown_verb(program, first);
+  return run_verb(*verb, {words.begin() + 1, words.end()}, shell);
 }
 
 }  // namespace
 }  // namespace dem::app
 
-int main(int argc, char** argv) { return dem::app::run(argc, argv); }
+int main(int argc, char** argv) { return dem::app::run({argv + 1, argv + argc}); }

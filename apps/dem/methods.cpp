@@ -2,8 +2,6 @@
 
 #include "dem/methods.h"
 
-#include <CLI/CLI.hpp>
-
 #include "dem/deterrace.h"
 #include "dem/draw.h"
 #include "dem/erosion.h"
@@ -16,7 +14,6 @@
 #include "dem/raytrace.h"
 #include "dem/sample.h"
 #include "dem/supersample.h"
-#include "manual/outline.h"
 #include "verbs.h"
 
 namespace dem::app {
@@ -68,26 +65,30 @@ Json as_json(const Generator& g) {
           {"presets", as_json(g.presets)}};
 }
 
-Json as_json(const ArgumentOutline& a) {
-  return {{"names", a.names},       {"value", a.value},     {"doc", a.doc},
-          {"group", a.group},       {"takes", a.takes},     {"choices", a.choices},
-          {"required", a.required}, {"repeats", a.repeats}, {"default", a.default_text}};
-}
-
-Json as_json(const std::vector<ArgumentOutline>& arguments) {
+Json as_json(const std::deque<Option>& options) {
   Json all = Json::array();
-  for (const auto& a : arguments) all.push_back(as_json(a));
+  for (const Option& o : options)
+    all.push_back({{"names", o.names},
+                   {"value", o.value},
+                   {"doc", o.doc},
+                   {"group", o.group},
+                   {"takes", o.takes},
+                   {"choices", o.choices},
+                   {"required", o.required},
+                   {"repeats", o.repeats},
+                   {"default", o.default_text}});
   return all;
 }
 
 /// The verbs with their options: for programs that offer them in another form.
-Json as_json(const std::vector<VerbOutline>& verbs) {
+Json as_json(const Program& program) {
   Json all = Json::array();
-  for (const auto& v : verbs)
-    all.push_back({{"name", v.name},
-                   {"summary", v.summary},
-                   {"arguments", as_json(v.arguments)},
-                   {"options", as_json(v.options)}});
+  for (const Command& c : program.commands)
+    all.push_back({{"name", c.name},
+                   {"summary", c.summary},
+                   {"group", c.group},
+                   {"arguments", as_json(c.arguments)},
+                   {"options", as_json(c.options)}});
   return all;
 }
 
@@ -163,7 +164,7 @@ std::vector<std::string> method_names() {
   return names;
 }
 
-int methods(const std::string& wanted, CLI::App& app, Shell& shell) {
+int methods(const std::string& wanted, const Program& program, Shell& shell) {
   const std::string name = wanted.substr(0, wanted.find(':'));
   std::string text;
   const Json fill = rows_of(all_fill_methods(), name, "Methods of `dem fill`:", text);
@@ -178,7 +179,7 @@ int methods(const std::string& wanted, CLI::App& app, Shell& shell) {
                         {"relief", fields_of<ReliefOptions>()},
                         {"view", fields_of<ViewOptions>()}};
     tables["options"] = option_tables();
-    tables["verbs"] = as_json(outline(app));
+    tables["verbs"] = as_json(program);
   }
   shell.print(tables, text);
   return kDone;
@@ -186,17 +187,15 @@ int methods(const std::string& wanted, CLI::App& app, Shell& shell) {
 
 }  // namespace
 
-void add_methods(CLI::App& app, Shell& shell) {
+void add_methods(Program& program, Shell& shell) {
   const auto name = std::make_shared<std::string>();
-  auto* verb =
-      add_verb(app, shell, "methods", "Every fill method and generator: settings, ranges, defaults",
-               "  dem methods\n"
-               "  dem methods mcmd                   # one of them\n"
-               "  dem methods --json | jq '.fill[].name'",
-               [name, &app, &shell] { return methods(*name, app, shell); });
-  verb->add_option("NAME", *name, "one of them; all, when left out")
-      ->check(suggests(method_names()))
-      ->type_name("");
+  Command& verb =
+      program.add("methods", kAbout, "List the fill methods and generators with their settings",
+                  "  dem methods\n"
+                  "  dem methods mcmd                   # one of them\n"
+                  "  dem methods --json | jq '.fill[].name'");
+  verb.work = [name, &program, &shell] { return methods(*name, program, shell); };
+  verb.argument("NAME", *name, "Name of one of them (all of them)").suggest(method_names());
 }
 
 }  // namespace dem::app

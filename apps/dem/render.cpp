@@ -1,6 +1,5 @@
 // dem render: pictures of a DEM.
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <map>
@@ -38,18 +37,16 @@ Settings settings(const Options& o) {
   Settings settings;
   for (const auto& [name, text] : o.given) {
     if (std::ranges::count(names, name) == 0)
-      throw std::invalid_argument(fmt::format("{}: style {} has no such setting; it has {}", name,
+      throw std::invalid_argument(fmt::format("--{} is not for style {}, which has {}", name,
                                               o.style, fmt::join(names, ", ")));
     settings.emplace_back(name, text);
   }
   if (o.style != "view")
     for (const auto& [name, text] :
-         {std::pair{"size", o.size}, {"camera", o.camera}, {"target", o.target}})
+         {std::pair{"--size", o.size}, {"--camera", o.camera}, {"--target", o.target}})
       if (!text.empty())
         throw std::invalid_argument(
-            fmt::format("{} is for --style view; {} has one pixel for "
-                        "each cell",
-                        name, o.style));
+            fmt::format("{} is for --style view; {} has one pixel for each cell", name, o.style));
   return settings;
 }
 
@@ -57,8 +54,7 @@ Settings settings(const Options& o) {
 Settings picture_size(const std::string& text) {
   if (text.empty()) return {};
   const auto x = text.find('x');
-  if (x == std::string::npos)
-    throw std::invalid_argument("size = " + text + "; must be WIDTHxHEIGHT, e.g. 1600x900");
+  if (x == std::string::npos) refuse("--size", text, "WIDTHxHEIGHT, for example 1600x900");
   return {{"width", text.substr(0, x)}, {"height", text.substr(x + 1)}};
 }
 
@@ -66,8 +62,8 @@ ViewOptions view_options(const Options& o, const Dem& dem, Settings settings) {
   for (auto& setting : picture_size(o.size)) settings.push_back(std::move(setting));
   ViewOptions view;
   dem::apply(settings, fields(view));
-  if (!o.camera.empty()) view.camera = place_in(dem, "camera", o.camera);
-  if (!o.target.empty()) view.target = place_in(dem, "target", o.target);
+  if (!o.camera.empty()) view.camera = place_in(dem, "--camera", o.camera);
+  if (!o.target.empty()) view.target = place_in(dem, "--target", o.target);
   return view;
 }
 
@@ -128,27 +124,27 @@ int render(const Options& o, Shell& shell) {
 
 /// An option for each field: --name VALUE; a switch that is off is --name, one that is on
 /// --no-name.
-void add_field_options(CLI::App& app, const std::shared_ptr<Options>& o) {
+void add_field_options(Command& verb, const std::shared_ptr<Options>& o) {
   ReliefOptions relief;
   ViewOptions view;
   const auto of_maps = fields(relief), of_views = fields(view);
-  const auto add = [&](const Field& f, const std::string& group, std::string normally) {
+  const auto add = [&](const Field& f, const std::string& group, const std::string& normally) {
+    verb.heading(group);
     if (f.type() == "boolean") {
       const bool on = f.text() == "true";
-      app.add_flag_callback((on ? "--no-" : "--") + f.name(),
-                            [o, name = f.name(), on] { o->given[name] = on ? "false" : "true"; },
-                            on ? "without " + f.doc() : f.doc())
-          ->group(group);
+      verb.flag_that((on ? "--no-" : "--") + f.name(),
+                     [o, name = f.name(), on] { o->given[name] = on ? "false" : "true"; },
+                     on ? "Without " + f.doc() : f.doc());
       return;
     }
-    const std::string values = f.choices().empty() ? f.doc() : f.doc() + ": " + f.range();
-    app.add_option_function<std::string>(
-           "--" + f.name(),
-           [o, name = f.name()](const std::string& text) { o->given[name] = text; },
-           values + " [" + normally + "]")
-        ->check(f.choices().empty() ? takes("number") : suggests(f.choices()))
-        ->type_name(f.choices().empty() ? "N" : "NAME")
-        ->group(group);
+    verb.option_read_by(
+            "--" + f.name(),
+            [o, name = f.name()](const std::string& text) { o->given[name] = text; },
+            f.choices().empty() ? "N" : "NAME",
+            f.choices().empty() ? f.doc() : f.doc() + ": " + f.range())
+        .kind(f.choices().empty() ? "number" : "")
+        .suggest(f.choices())
+        .show_default(normally);
   };
   for (const auto& f : of_maps) {
     const auto same = std::ranges::find(of_views, f.name(), &Field::name);
@@ -165,47 +161,40 @@ void add_field_options(CLI::App& app, const std::shared_ptr<Options>& o) {
 
 std::string palette_lines() {
   std::string text;
-  for (const auto& p : palettes()) text += fmt::format("\n  {:<9} {}", p.name, p.doc);
+  for (const auto& p : palettes()) text += fmt::format("  {:<9} {}\n", p.name, p.doc);
   return text;
 }
 
 }  // namespace
 
-void add_render(CLI::App& app, Shell& shell) {
+void add_render(Program& program, Shell& shell) {
   const auto o = std::make_shared<Options>();
-  auto* verb =
-      add_verb(app, shell, "render", "Draw a DEM: hillshade, colour relief, perspective view",
-               "  dem render N44W072.hgt relief.png\n"
-               "  dem render N44W072.hgt shade.png --style hillshade --multidirectional\n"
-               "  dem render N44W072.hgt block.png --style view --palette alpine --samples 16\n"
-               "  dem render N44W072.hgt summit.png --style view --camera=-71.2,44.1,+300 \\\n"
-               "      --target=-71.3,44.27,1900 --fov 50\n"
-               "Palettes:" +
-                   palette_lines(),
-               [o, &shell] { return render(*o, shell); });
-  verb->add_option("IN", o->in, "a DEM, anything GDAL opens")
-      ->required()
-      ->check(takes("raster"))
-      ->type_name("");
-  verb->add_option("OUT", o->out, "the picture; the extension says the format: .png, .jpg, .tif")
-      ->required()
-      ->check(takes("new picture"))
-      ->type_name("");
-  verb->add_option("--style", o->style, "hillshade and relief: maps, a pixel a cell; view")
-      ->check(one_of({"hillshade", "relief", "view"}))
-      ->type_name("STYLE")
-      ->capture_default_str();
-  add_field_options(*verb, o);
-  verb->add_option("--size", o->size, "pixels of the picture [1600x900]")
-      ->type_name("WxH")
-      ->group("Views");
-  verb->add_option("--camera", o->camera, "in the DEM's coordinates; Z as +METRES is above ground")
-      ->type_name("X,Y,Z")
-      ->group("Views");
-  verb->add_option("--target", o->target, "what to look at [the middle of the terrain]")
-      ->type_name("X,Y,Z")
-      ->group("Views");
-  add_read_options(*verb, o->read);
+  Command& verb =
+      program.add("render", kEveryday, "Draw a DEM: hillshade, colour relief or perspective view",
+                  "  dem render N44W072.hgt relief.png\n"
+                  "  dem render N44W072.hgt shade.png --style hillshade --multidirectional\n"
+                  "  dem render N44W072.hgt block.png --style view --palette alpine --samples 16\n"
+                  "  dem render N44W072.hgt summit.png --style view --camera=-71.2,44.1,+300 \\\n"
+                  "      --target=-71.3,44.27,1900 --fov 50");
+  verb.notes = "Palettes:\n" + palette_lines();
+  verb.work = [o, &shell] { return render(*o, shell); };
+  verb.argument("IN", o->in, "DEM, in any format that GDAL opens").kind("raster").must_be_given();
+  verb.argument("OUT", o->out, "Picture, in the format of its extension: .png, .jpg or .tif")
+      .kind("new picture")
+      .must_be_given();
+  verb.option("--style", o->style, "STYLE",
+              "hillshade or relief (maps with one pixel for each cell) or view")
+      .one_of({"hillshade", "relief", "view"})
+      .show_default();
+  add_field_options(verb, o);
+  verb.heading("Views");
+  verb.option("--size", o->size, "WxH", "Width and height of the picture in pixels")
+      .show_default("1600x900");
+  verb.option("--camera", o->camera, "X,Y,Z",
+              "Place of the camera in the coordinates of the DEM; a Z of +METRES is above ground");
+  verb.option("--target", o->target, "X,Y,Z", "Place that the camera looks at")
+      .show_default("the middle of the terrain");
+  add_read_options(verb, o->read);
 }
 
 }  // namespace dem::app

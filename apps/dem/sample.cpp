@@ -2,7 +2,6 @@
 
 #include "dem/sample.h"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 
@@ -24,7 +23,7 @@ struct Options {
   double contours = 0;
   std::uint64_t seed = 1;
   ReadOptions read;
-  std::vector<CLI::Option*> ways;  // of which one is to be given
+  std::vector<const Option*> ways;  // of which one is to be given
 };
 
 struct Sampled {
@@ -39,14 +38,13 @@ std::size_t cells_of(double share, std::size_t known) {
 
 /// Before the file is read: one way of sampling, and percentages that are some.
 void check_options(const Options& o) {
-  if (std::ranges::count_if(o.ways, [](const CLI::Option* way) { return way->count() > 0; }) != 1)
+  if (std::ranges::count_if(o.ways, [](const Option* way) { return way->count > 0; }) != 1)
     throw std::invalid_argument(
         "exactly one of --keep, --count, --every, --edges, --voids, --tracks, --contours, "
-        "--greedy, "
-        "--max-error is needed (see `dem sample --help`)");
+        "--greedy, --max-error is needed (see `dem sample --help`)");
   find_method(all_fill_methods(), o.method);
   for (const auto& [name, text] :
-       {std::pair{"keep", o.keep}, {"edges", o.edges}, {"voids", o.voids}})
+       {std::pair{"--keep", o.keep}, {"--edges", o.edges}, {"--voids", o.voids}})
     if (!text.empty()) parse_share(name, text);
 }
 
@@ -66,14 +64,14 @@ Sampled sample(const Options& o, const Dem& dem, const Run& run) {
   if (o.greedy || o.max_error > 0) return sample_by_need(o, dem, run);
   if (o.count) return {sample_random(dem, o.count, o.seed), "random" + seed};
   if (!o.keep.empty())
-    return {sample_random(dem, cells_of(parse_share("keep", o.keep), known), o.seed),
+    return {sample_random(dem, cells_of(parse_share("--keep", o.keep), known), o.seed),
             "random" + seed};
   if (o.every) return {sample_regular(dem, o.every), fmt::format("every {} cells", o.every)};
   if (!o.edges.empty())
-    return {sample_edges(dem, cells_of(parse_share("edges", o.edges), known)), "Sobel edges"};
+    return {sample_edges(dem, cells_of(parse_share("--edges", o.edges), known)), "Sobel edges"};
   if (!o.voids.empty())
     return {sample_voids(
-                dem, {.remove = cells_of(parse_share("voids", o.voids), known), .seed = o.seed}),
+                dem, {.remove = cells_of(parse_share("--voids", o.voids), known), .seed = o.seed}),
             "voids cut" + seed};
   if (o.tracks)
     return {sample_tracks(dem, o.tracks, o.seed), fmt::format("{} tracks", o.tracks) + seed};
@@ -113,55 +111,45 @@ int run_sample(const Options& o, Shell& shell) {
 
 }  // namespace
 
-void add_sample(CLI::App& app, Shell& shell) {
+void add_sample(Program& program, Shell& shell) {
   const auto o = std::make_shared<Options>();
-  auto* verb =
-      add_verb(app, shell, "sample", "Make a problem from a whole DEM: keep some cells only",
-               "  dem sample whole.tif sparse.tif --keep 3.4%      # random cells\n"
-               "  dem sample whole.tif sparse.tif --count 35721 --seed 7\n"
-               "  dem sample N44W072.hgt edges.tif --edges 10%     # silhouettes, by Sobel\n"
-               "  dem sample whole.tif holed.tif --voids 5%        # holes as SRTM has them",
-               [o, &shell] { return run_sample(*o, shell); });
-  verb->add_option("IN", o->in, "a DEM, as whole as can be")
-      ->required()
-      ->check(takes("raster"))
-      ->type_name("");
-  verb->add_option("OUT", o->out, "the same with fewer known cells")
-      ->required()
-      ->check(takes("new raster"))
-      ->type_name("");
-  const auto way = [&](const char* name, auto& value, const char* type, const char* doc) {
-    return verb->add_option(name, value, doc)->type_name(type)->group("How (exactly one)");
+  Command& verb = program.add(
+      "sample", kMeasure, "Remove cells of a DEM, to make a test problem whose answer is known",
+      "  dem sample whole.tif sparse.tif --keep 3.4%      # random cells\n"
+      "  dem sample whole.tif sparse.tif --count 35721 --seed 7\n"
+      "  dem sample N44W072.hgt edges.tif --edges 10%     # silhouettes, by the Sobel gradient\n"
+      "  dem sample whole.tif holed.tif --voids 5%        # voids like those of SRTM");
+  verb.work = [o, &shell] { return run_sample(*o, shell); };
+  verb.argument("IN", o->in, "DEM without voids, or with few").kind("raster").must_be_given();
+  verb.argument("OUT", o->out, "The DEM with fewer known cells").kind("new raster").must_be_given();
+  verb.option("-m,--method", o->method, "NAME",
+              "Fill method that --greedy and --max-error choose cells for")
+      .suggest(names_and_presets(all_fill_methods()))
+      .show_default();
+  verb.option("--seed", o->seed, "N",
+              "Random seed; the same seed gives the same cells on every machine")
+      .show_default();
+  verb.heading("How (exactly one)");
+  const auto way = [&](const char* name, auto& value, const char* type,
+                       const char* doc) -> Option& {
+    Option& added = verb.option(name, value, type, doc);
+    o->ways.push_back(&added);
+    return added;
   };
-  const auto positive = [](const std::string& text) {
-    double value = 0;
-    const bool good = CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value > 0;
-    return good ? std::string() : text + "; must be a number above 0";
-  };
-  o->ways = {
-      way("--keep", o->keep, "P%", "keep this share of the known cells, at random"),
-      way("--count", o->count, "N", "keep this many cells, at random")->check(positive),
-      way("--every", o->every, "N", "keep every N-th column and row")->check(positive),
-      way("--edges", o->edges, "P%", "keep this share, where Sobel's gradient is strongest"),
-      way("--voids", o->voids, "P%", "cut ragged voids until this share is gone"),
-      way("--tracks", o->tracks, "N", "keep N straight tracks, as a ship's")->check(positive),
-      way("--contours", o->contours, "METRES", "keep contour lines so far apart")->check(positive),
-      way("--greedy", o->greedy, "N", "keep N cells, those that --method would miss worst")
-          ->check(positive),
-      way("--max-error", o->max_error, "METRES",
-          "keep so many that --method misses no cell by more")
-          ->check(positive)};
-  verb->add_option("-m,--method", o->method, "that --greedy and --max-error reconstruct with")
-      ->check(suggests(names_and_presets(all_fill_methods())))
-      ->type_name("NAME")
-      ->capture_default_str();
-  verb->add_option("--seed", o->seed, "another seed, other cells; the same on every machine")
-      ->check([](const std::string& text) {
-        return text.starts_with('-') ? text + "; must be a whole number from 0 up" : std::string();
-      })
-      ->type_name("N")
-      ->capture_default_str();
-  add_read_options(*verb, o->read);
+  way("--keep", o->keep, "P%", "Keep this part of the known cells, chosen at random");
+  way("--count", o->count, "N", "Keep this number of cells, chosen at random").above(0);
+  way("--every", o->every, "N", "Keep the cells of every N-th column and row").above(0);
+  way("--edges", o->edges, "P%",
+      "Keep this part of the known cells, where Sobel's gradient is largest");
+  way("--voids", o->voids, "P%", "Remove this part of the known cells, in ragged voids");
+  way("--tracks", o->tracks, "N", "Keep the cells along N straight tracks, like those of a ship")
+      .above(0);
+  way("--contours", o->contours, "METRES", "Keep contour lines with this interval").above(0);
+  way("--greedy", o->greedy, "N", "Keep the N cells that --method would miss most").above(0);
+  way("--max-error", o->max_error, "METRES",
+      "Keep as few cells as --method needs to miss no cell by more than this")
+      .above(0);
+  add_read_options(verb, o->read);
 }
 
 }  // namespace dem::app

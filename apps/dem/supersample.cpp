@@ -2,8 +2,6 @@
 
 #include "dem/supersample.h"
 
-#include <CLI/CLI.hpp>
-
 #include "dem/io/methods.h"
 #include "verbs.h"
 
@@ -76,40 +74,34 @@ int run_supersample(const Options& o, Shell& shell) {
 
 }  // namespace
 
-void add_supersample(CLI::App& app, Shell& shell) {
+void add_supersample(Program& program, Shell& shell) {
   const auto o = std::make_shared<Options>();
-  auto* verb = add_verb(app, shell, "supersample", "A DEM on a finer lattice",
-                        "  dem supersample coarse.tif fine.tif --factor 3\n"
-                        "  dem supersample means.tif fine.tif --factor 2.5 --preserve block-mean\n"
-                        "  dem supersample coarse.tif rough.tif --factor 4 --roughness",
-                        [o, &shell] { return run_supersample(*o, shell); });
-  verb->add_option("IN", o->in, "a DEM; its unknown cells are filled too")
-      ->required()
-      ->check(takes("raster"))
-      ->type_name("");
-  verb->add_option("OUT", o->out, "the finer DEM, in float32")
-      ->required()
-      ->check(takes("new raster"))
-      ->type_name("");
-  verb->add_option("-f,--factor", o->super.factor, "so many fine cells to a coarse one; above 1")
-      ->required()
-      ->type_name("N");
-  verb->add_option_function<std::string>(
+  Command& verb =
+      program.add("supersample", kEveryday, "Interpolate a DEM to a smaller cell size",
+                  "  dem supersample coarse.tif fine.tif --factor 3\n"
+                  "  dem supersample means.tif fine.tif --factor 2.5 --preserve block-mean\n"
+                  "  dem supersample coarse.tif rough.tif --factor 4 --roughness");
+  verb.work = [o, &shell] { return run_supersample(*o, shell); };
+  verb.argument("IN", o->in, "DEM; its nodata cells are filled too").kind("raster").must_be_given();
+  verb.argument("OUT", o->out, "The finer DEM, in float32").kind("new raster").must_be_given();
+  verb.option("-f,--factor", o->super.factor, "N", "How many times finer: 2 halves the cell size")
+      .above(1)
+      .must_be_given();
+  verb.option_read_by(
           "--preserve", [o](const std::string& what) { field(o->super, "preserve").set(what); },
-          "heights (default): met at the coarse centres; block-mean")
-      ->check(one_of(field(o->super, "preserve").choices()))
-      ->type_name("WHAT");
-  verb->add_flag("--roughness", o->roughness,
-                 "a random surface, as rough below the old cell size as terrain is");
-  verb->add_option("--seed", o->seed, "of the roughness")->type_name("N")->capture_default_str();
-  verb->add_option("-m,--method", o->method, "how to fill between (see dem methods)")
-      ->check(suggests(names_and_presets(all_fill_methods())))
-      ->type_name("NAME")
-      ->capture_default_str();
-  verb->add_option("-s,--set", o->set, "a setting of the method; may be repeated")
-      ->allow_extra_args(false)
-      ->type_name("KEY=VALUE");
-  add_read_options(*verb, o->read);
+          "WHAT",
+          "What the finer DEM keeps: the heights at the coarse centres, or the mean of each coarse "
+          "cell")
+      .one_of(field(o->super, "preserve").choices())
+      .show_default("heights");
+  verb.flag("--roughness", o->roughness,
+            "Add random relief below the old cell size, as rough as the terrain");
+  verb.option("--seed", o->seed, "N", "Random seed for --roughness").show_default();
+  verb.option("-m,--method", o->method, "NAME", "Fill method (see `dem methods`)")
+      .suggest(names_and_presets(all_fill_methods()))
+      .show_default();
+  add_set_option(verb, o->set, "method");
+  add_read_options(verb, o->read);
 }
 
 }  // namespace dem::app

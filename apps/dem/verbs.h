@@ -1,26 +1,29 @@
 #pragma once
-// One function per verb, in a file of its own or with its kin: it adds the verb to the command
-// line.
+// One function per verb, in a file of its own or with its kin: it adds the verb to the program.
 
 #include "common.h"
 
 namespace dem::app {
 
-void add_info(CLI::App& app, Shell& shell);
-void add_sample(CLI::App& app, Shell& shell);
-void add_fill(CLI::App& app, Shell& shell);
-void add_grid(CLI::App& app, Shell& shell);
-void add_check(CLI::App& app, Shell& shell);
-void add_supersample(CLI::App& app, Shell& shell);
-void add_deterrace(CLI::App& app, Shell& shell);
-void add_evaluate(CLI::App& app, Shell& shell);
-void add_curve(CLI::App& app, Shell& shell);
-void add_reproduce(CLI::App& app, Shell& shell);
-void add_generate(CLI::App& app, Shell& shell);
-void add_erode(CLI::App& app, Shell& shell);
-void add_render(CLI::App& app, Shell& shell);
-void add_methods(CLI::App& app, Shell& shell);
-void add_manual(CLI::App& app, Shell& shell);
-void add_completion(CLI::App& app, Shell& shell);
+// Headings of verbs in the help of the program.
+inline constexpr const char *kEveryday = "Everyday", *kMeasure = "Measure",
+                            *kSynthesize = "Synthesize", *kAbout = "About";
+
+void add_info(Program& program, Shell& shell);
+void add_fill(Program& program, Shell& shell);
+void add_grid(Program& program, Shell& shell);
+void add_supersample(Program& program, Shell& shell);
+void add_deterrace(Program& program, Shell& shell);
+void add_render(Program& program, Shell& shell);
+void add_check(Program& program, Shell& shell);
+void add_sample(Program& program, Shell& shell);
+void add_evaluate(Program& program, Shell& shell);
+void add_curve(Program& program, Shell& shell);
+void add_reproduce(Program& program, Shell& shell);
+void add_generate(Program& program, Shell& shell);
+void add_erode(Program& program, Shell& shell);
+void add_methods(Program& program, Shell& shell);
+void add_manual(Program& program, Shell& shell);
+void add_completion(Program& program, Shell& shell);
 
 }  // namespace dem::app

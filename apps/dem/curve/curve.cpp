@@ -1,6 +1,5 @@
 // dem curve: error and time of every method against the share of cells kept.
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 
 #include "curve/budget.h"
@@ -87,51 +86,40 @@ int curve(const Options& o, Shell& shell) {
 
 }  // namespace
 
-void add_curve(CLI::App& app, Shell& shell) {
+void add_curve(Program& program, Shell& shell) {
   const auto o = std::make_shared<Options>();
-  auto* verb = add_verb(
-      app, shell, "curve", "Error and time of each method at each rate; table, CSV, SVG",
+  Command& verb = program.add(
+      "curve", kMeasure,
+      "Measure the error and time of fill methods for several shares of known cells",
       "  dem curve whole.tif results\n"
       "  dem curve whole.tif results --methods mcmd,mcmd:paper,idw --rates 50,10,3.4,1\n"
       "  dem curve N44W072.hgt results --repeats 1 --overwrite\n"
-      "  dem curve whole.tif results --budget 5,10 --methods spline\n" +
-          fmt::format("Rates: {}, when none are given", fmt::join(o->curve.percents, ", ")),
-      [o, &shell] { return curve(*o, shell); });
-  verb->add_option("TRUTH", o->truth, "a DEM, as whole as can be")
-      ->required()
-      ->check(takes("raster"))
-      ->type_name("");
-  verb->add_option("DIR", o->dir, "folder for curves.csv, curves.json, curves.svg")
-      ->required()
-      ->check(takes("new folder"))
-      ->type_name("");
-  verb->add_option("-m,--methods", o->curve.methods, "names, by commas; all, when left out")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->type_name("A,B,C");
-  verb->add_option("-r,--rates", o->curve.percents, "percent of the cells that are kept")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->type_name("P,P,P");
-  verb->add_option("--budget", o->budget.rmse_m,
-                   "instead: cells that each way of sampling needs for this RMSE, m")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->type_name("M,M");
-  verb->add_option("--repeats", o->curve.repeats, "runs of each; the median time counts")
-      ->check(CLI::Range(1, 1000).description(""))
-      ->type_name("N")
-      ->capture_default_str();
-  verb->add_option("--rivals", o->rivals,
-                   "scores of other programs (scripts/compare.py), for the picture")
-      ->check(takes("file"))
-      ->allow_extra_args(false)
-      ->type_name("FILE");
-  verb->add_option("--seed", o->curve.seed, "of the cells that are kept")
-      ->type_name("N")
-      ->capture_default_str();
-  add_report_option(*verb, o->report);
-  add_read_options(*verb, o->read);
+      "  dem curve whole.tif results --budget 5,10 --methods spline");
+  verb.work = [o, &shell] { return curve(*o, shell); };
+  verb.argument("TRUTH", o->truth, "DEM without voids, or with few").kind("raster").must_be_given();
+  verb.argument("DIR", o->dir, "Folder for curves.csv, curves.json and curves.svg")
+      .kind("new folder")
+      .must_be_given();
+  verb.option("-m,--methods", o->curve.methods, "A,B,C",
+              "Names of fill methods, separated by commas (all of them)")
+      .by_commas();
+  verb.option("-r,--rates", o->curve.percents, "P,P,P",
+              "Percentages of the cells that are kept, separated by commas")
+      .by_commas()
+      .show_default();
+  verb.option("--budget", o->budget.rmse_m, "M,M",
+              "Measure instead how many cells each way of sampling needs for these RMSE in metres")
+      .by_commas();
+  verb.option("--repeats", o->curve.repeats, "N",
+              "Number of runs of each measurement; the median time is reported")
+      .within(1, 1000)
+      .show_default();
+  verb.option("--rivals", o->rivals, "FILE",
+              "Scores of other programs, from scripts/compare.py, to be drawn too")
+      .kind("file");
+  verb.option("--seed", o->curve.seed, "N", "Random seed for the choice of cells").show_default();
+  add_report_option(verb, o->report);
+  add_read_options(verb, o->read);
 }
 
 }  // namespace dem::app

@@ -1,6 +1,5 @@
 // dem fill: fill the holes of a DEM.
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <optional>
@@ -284,149 +283,91 @@ std::string condition_help() {
     text += " " + fact.name;
     width += fact.name.size() + 1;
   }
-  return text;
+  return text + "\n";
 }
 
-CLI::Validator above_zero() {
-  return CLI::Validator(
-      [](const std::string& text) {
-        double value = 0;
-        return CLI::detail::lexical_cast(text, value) && value > 0
-                   ? std::string()
-                   : text + "; must be a number above 0";
-      },
-      "");
-}
-
-void add_hole_options(CLI::App& app, HoleChoice& choice, std::string& region) {
-  const char* group = "Which holes (all by default)";
-  app.add_flag("--inner-only", choice.inner_only, "not those that touch the border of the raster")
-      ->group(group);
-  app.add_option("--max-area-km2", choice.max_area_km2, "only those up to this area on the ground")
-      ->check(above_zero())
-      ->check(takes("number"))
-      ->type_name("A")
-      ->group(group);
-  app.add_option("--max-distance-m", choice.max_distance_m,
-                 "only those with no cell further from data than this")
-      ->check(above_zero())
-      ->check(takes("number"))
-      ->type_name("D")
-      ->group(group);
-  app.add_option("--min-cells", choice.min_cells, "only those of at least so many cells")
-      ->type_name("N")
-      ->group(group);
-  app.add_option("--where", choice.where, "only those that meet a condition, see below")
-      ->type_name("CONDITION")
-      ->group(group);
-  app.add_option("--region", region, "only those with a cell in these polygons, anything OGR opens")
-      ->check(takes("vector"))
-      ->type_name("FILE")
-      ->group(group);
-}
-
-void add_write_options(CLI::App& app, WriteOptions& write) {
-  const char* group = "Writing";
-  app.add_option("--format", write.format, "GDAL driver name, HGT or image; else by extension")
-      ->type_name("NAME")
-      ->group(group);
-  app.add_option_function<std::string>(
-         "--type",
-         [&write](const std::string& name) {
-           apply({{"type", name}}, fields(write));
-         },
-         "int8 uint8 int16 uint16 int32 uint32 float32 float64; else as IN")
-      ->check(suggests(cell_type_names()))
-      ->check([](const std::string& name) {
-        if (std::ranges::find(cell_type_names(), name) != cell_type_names().end())
-          return std::string();
-        return name +
-               " is no cell type; must be int8, uint8, int16, uint16, int32, uint32, float32 or "
-               "float64";
-      })
-      ->type_name("TYPE")
-      ->group(group);
-  app.add_option_function<double>(
-         "--out-nodata", [&write](double v) { write.nodata = v; },
-         "the no-data value that OUT declares; else as IN")
-      ->check(takes("number"))
-      ->type_name("VALUE")
-      ->group(group);
+void add_hole_options(Command& verb, HoleChoice& choice, std::string& region) {
+  verb.heading("Which voids (all by default)");
+  verb.flag("--inner-only", choice.inner_only, "Leave voids that touch the border of the raster");
+  verb.option("--max-area-km2", choice.max_area_km2, "A",
+              "Fill only voids up to this area on the ground")
+      .above(0);
+  verb.option("--max-distance-m", choice.max_distance_m, "D",
+              "Fill only voids where no cell is farther than this from the nearest known cell")
+      .above(0);
+  verb.option("--min-cells", choice.min_cells, "N",
+              "Fill only voids with at least this number of cells");
+  verb.option("--where", choice.where, "CONDITION",
+              "Fill only voids that meet a condition (see below)");
+  verb.option("--region", region, "FILE",
+              "Fill only voids with a cell in these polygons, in any format that OGR opens")
+      .kind("vector");
+  verb.heading("Options");
 }
 
 }  // namespace
 
-void add_fill(CLI::App& app, Shell& shell) {
+void add_fill(Program& program, Shell& shell) {
   const auto o = std::make_shared<Options>();
-  auto* verb = add_verb(
-      app, shell, "fill", "Fill the holes of a DEM; known cells stay as they are, bit for bit",
+  Command& verb = program.add(
+      "fill", kEveryday, "Fill the voids of a DEM; known cells stay unchanged, bit for bit",
       "  dem fill N36E008.hgt filled.hgt\n"
-      "  dem fill sparse.tif filled.tif --sigma sigma.tif           # and how sure each cell is\n"
+      "  dem fill sparse.tif filled.tif --sigma sigma.tif           # with standard errors\n"
       "  dem fill tiles/ filled/ --memory 2G                        # a folder of .hgt tiles\n"
-      "  dem fill sparse.tif filled.tif --report filled.html        # a page to look at\n"
-      "Methods: " +
-          method_names() + " (their settings: dem methods NAME)\n" + condition_help(),
-      [o, &shell] { return fill(*o, shell); });
-  verb->add_option("IN", o->in, "a DEM with holes, anything GDAL opens; or a folder of tiles")
-      ->required()
-      ->check(takes("raster"))
-      ->type_name("");
-  verb->add_option("OUT", o->out,
-                   "by extension; NAME.vrt: tiles of GeoTIFF; FOLDER/: tiles of .hgt")
-      ->required()
-      ->check(takes("new raster"))
-      ->type_name("");
-  verb->add_option("-m,--method", o->method, "how to fill, NAME or NAME:PRESET")
-      ->check(suggests(names_and_presets(all_fill_methods())))
-      ->type_name("NAME")
-      ->capture_default_str();
-  verb->add_option("-s,--set", o->set, "a setting of the method; may be repeated")
-      ->allow_extra_args(false)
-      ->type_name("KEY=VALUE");
-  verb->add_option("--sigma", o->sigma, "also write the standard deviation of each cell, in metres")
-      ->check(takes("new raster"))
-      ->type_name("FILE");
-  verb->add_option("--roughness", o->roughness,
-                   "gaps as rough as the terrain around (auto), or VALUE times that")
-      ->type_name("auto|VALUE");
-  verb->add_option("--realisation", o->realisation,
-                   "the K-th random surface through the data, as rough as the terrain")
-      ->check(takes("number"))
-      ->check(CLI::Range(1, 1000000).description(""))
-      ->type_name("K");
-  verb->add_option("--seed", o->seed, "of random numbers")->type_name("N");
-  verb->add_option("--source", o->origin,
-                   "also write where each cell comes from: measured, method, aux, water")
-      ->check(takes("new raster"))
-      ->type_name("FILE");
-  verb->add_option("--report-holes", o->table,
-                   "also write a JSON table of holes, with errors of hidden rim cells")
-      ->check(takes("new file"))
-      ->type_name("FILE");
-  add_report_option(*verb, o->report);
-  verb->add_option("--aux", o->aux,
-                   "a DEM to fill over; each hole takes the best of several, or none")
-      ->check(takes("raster"))
-      ->allow_extra_args(false)
-      ->type_name("DEM");
-  verb->add_option("--water", o->water, "polygons of lakes: flat where unknown, their shores above")
-      ->check(takes("vector"))
-      ->type_name("FILE");
-  verb->add_flag("--whole", o->whole,
-                 "as one problem, not hole by hole; so by itself above 25 % unknown");
-  verb->add_option("--memory", o->memory,
-                   "part by part within so much memory: 2G, 500M (GeoTIFF, VRT ...)")
-      ->type_name("SIZE");
-  verb->add_flag("--resume", o->resume,
-                 "keep a journal; the same command goes on where it was stopped");
-  verb->add_option_function<std::string>(
-          "--task",
-          [o](const std::string& text) { std::tie(o->task, o->tasks) = parse_task(text); },
-          "the I-th of N shares, into a journal; after all, --resume writes OUT")
-      ->type_name("I/N");
-  add_hole_options(*verb, o->choice, o->region);
-  add_read_options(*verb, o->read);
-  add_write_options(*verb, o->write);
+      "  dem fill sparse.tif filled.tif --report filled.html        # a page with pictures");
+  verb.notes =
+      "Methods: " + method_names() + " (their settings: dem methods NAME)\n" + condition_help();
+  verb.work = [o, &shell] { return fill(*o, shell); };
+  verb.argument("IN", o->in, "DEM with voids, in any format that GDAL opens, or a folder of tiles")
+      .kind("raster")
+      .must_be_given();
+  verb.argument("OUT", o->out,
+                "Filled DEM, in the format of its extension; NAME.vrt for tiles of GeoTIFF, "
+                "FOLDER/ for tiles of .hgt")
+      .kind("new raster")
+      .must_be_given();
+  verb.option("-m,--method", o->method, "NAME", "Fill method, NAME or NAME:PRESET")
+      .suggest(names_and_presets(all_fill_methods()))
+      .show_default();
+  add_set_option(verb, o->set, "method");
+  verb.option("--sigma", o->sigma, "FILE", "Also write the standard error of each cell in metres")
+      .kind("new raster");
+  verb.option(
+      "--roughness", o->roughness, "auto|VALUE",
+      "Make filled cells as rough as the terrain around them (auto), or VALUE times as rough");
+  verb.option("--realisation", o->realisation, "K",
+              "Make the K-th of many random surfaces that pass through the known cells and are as "
+              "rough as the terrain")
+      .within(1, 1000000);
+  verb.option("--seed", o->seed, "N", "Random seed for --roughness and --realisation");
+  verb.option("--source", o->origin, "FILE",
+              "Also write where each height comes from: measured, method, auxiliary DEM or water")
+      .kind("new raster");
+  verb.option(
+          "--report-holes", o->table, "FILE",
+          "Also write a JSON table of the holes, with the errors of hidden cells on their edges")
+      .kind("new file");
+  add_report_option(verb, o->report);
+  verb.option("--aux", o->aux, "DEM",
+              "Auxiliary DEM that gives the shape of filled cells; may be repeated, and each hole "
+              "takes the one that fits best, or none")
+      .kind("raster");
+  verb.option("--water", o->water, "FILE",
+              "Polygons of lakes, which are filled flat and below their shores")
+      .kind("vector");
+  verb.flag("--whole", o->whole,
+            "Fill the whole raster at once instead of hole by hole (automatic when more than 25 % "
+            "of the cells are nodata)");
+  verb.option("--memory", o->memory, "SIZE",
+              "Work part by part within this amount of memory, for example 2G or 500M");
+  verb.flag("--resume", o->resume,
+            "Keep a journal, from which the same command goes on after it was stopped");
+  verb.option_read_by(
+      "--task", [o](const std::string& text) { std::tie(o->task, o->tasks) = parse_task(text); },
+      "I/N", "Fill the I-th of N shares of the holes; after all of them --resume writes OUT");
+  add_hole_options(verb, o->choice, o->region);
+  add_read_options(verb, o->read);
+  add_write_options(verb, o->write);
 }
 
 }  // namespace dem::app

@@ -10,7 +10,7 @@ namespace {
 
 enum class Value { words, files, folders, anything };
 
-Value value_of(const ArgumentOutline& a) {
+Value value_of(const Option& a) {
   if (!a.choices.empty()) return Value::words;
   if (a.takes.ends_with("folder")) return Value::folders;
   return a.takes.empty() || a.takes == "number" || a.takes == "crs" ? Value::anything
@@ -32,7 +32,7 @@ std::string escaped(const std::string& text, std::string_view special) {
 }
 
 /// The words for the first argument, when it is one of some names.
-std::vector<std::string> first_words(const VerbOutline& verb) {
+std::vector<std::string> first_words(const Command& verb) {
   return verb.arguments.empty() ? std::vector<std::string>() : verb.arguments[0].choices;
 }
 
@@ -59,7 +59,7 @@ _dem() {
   COMPREPLY=()
 )";
 
-std::string bash_verb(const VerbOutline& verb) {
+std::string bash_verb(const Command& verb) {
   std::vector<std::string> options{"--help"}, folders, anything;
   std::string cases;
   for (const auto& o : verb.options) {
@@ -87,14 +87,12 @@ std::string bash_verb(const VerbOutline& verb) {
   return text + "      ;;\n";
 }
 
-std::string bash(const std::vector<VerbOutline>& verbs) {
-  std::vector<std::string> names;
-  for (const auto& verb : verbs) names.push_back(verb.name);
+std::string bash(const Program& program) {
   std::string text = kBashHead;
   text += fmt::format("  if ((count < 3)); then _dem_words \"{} --help --version\"; return; fi\n",
-                      joined(names));
+                      joined(program.names()));
   text += "  case ${words[1]} in\n";
-  for (const auto& verb : verbs) text += bash_verb(verb);
+  for (const auto& verb : program.commands) text += bash_verb(verb);
   return text + "  esac\n}\ncomplete -o default -F _dem dem\n";
 }
 
@@ -111,7 +109,7 @@ std::string zsh_text(const std::string& text) {
   return out;
 }
 
-std::string zsh_value(const ArgumentOutline& a) {
+std::string zsh_value(const Option& a) {
   switch (value_of(a)) {
     case Value::words:
       return fmt::format("({})", escaped(joined(a.choices), ":"));
@@ -125,7 +123,7 @@ std::string zsh_value(const ArgumentOutline& a) {
   return " ";
 }
 
-std::string zsh_option(const ArgumentOutline& o) {
+std::string zsh_option(const Option& o) {
   const std::string value =
       o.value.empty() ? "" : fmt::format(":{}:{}", zsh_text(o.value), zsh_value(o));
   const std::string tail = fmt::format("'[{}]{}'", zsh_text(o.doc), value);
@@ -135,7 +133,7 @@ std::string zsh_option(const ArgumentOutline& o) {
                      fmt::join(o.names, ","), tail);
 }
 
-std::string zsh_verb(const VerbOutline& verb) {
+std::string zsh_verb(const Command& verb) {
   std::string text = fmt::format("    {})\n      _arguments -S \\\n", verb.name);
   for (const auto& o : verb.options) text += fmt::format("        {} \\\n", zsh_option(o));
   text += "        '(-h --help)'{-h,--help}'[help and examples]'";
@@ -144,16 +142,16 @@ std::string zsh_verb(const VerbOutline& verb) {
   return text + " ;;\n";
 }
 
-std::string zsh(const std::vector<VerbOutline>& verbs) {
+std::string zsh(const Program& program) {
   std::string text =
       "#compdef dem\n# Completion of `dem` in zsh; made by `dem completion zsh`.\n_dem() {\n"
       "  local -a verbs=(\n";
-  for (const auto& verb : verbs)
+  for (const auto& verb : program.commands)
     text += fmt::format("    '{}:{}'\n", verb.name, zsh_text(verb.summary));
   text +=
       "  )\n  if ((CURRENT == 2)); then\n    _describe verb verbs\n    return\n  fi\n"
       "  local verb=$words[2]\n  shift words\n  ((CURRENT--))\n  case $verb in\n";
-  for (const auto& verb : verbs) text += zsh_verb(verb);
+  for (const auto& verb : program.commands) text += zsh_verb(verb);
   return text +
          "  esac\n}\n"
          "if [[ $funcstack[1] == _dem ]]; then _dem \"$@\"; else compdef _dem dem; fi\n";
@@ -163,7 +161,7 @@ std::string zsh(const std::vector<VerbOutline>& verbs) {
 
 std::string fish_text(const std::string& text) { return fmt::format("'{}'", escaped(text, "\\'")); }
 
-std::string fish_value(const ArgumentOutline& a) {
+std::string fish_value(const Option& a) {
   switch (value_of(a)) {
     case Value::words:
       return fmt::format(" -x -a {}", fish_text(joined(a.choices)));
@@ -177,7 +175,7 @@ std::string fish_value(const ArgumentOutline& a) {
   return " -x";
 }
 
-std::string fish_option(const std::string& start, const ArgumentOutline& o) {
+std::string fish_option(const std::string& start, const Option& o) {
   std::string text = start;
   for (const auto& name : o.names)
     text += name.starts_with("--") ? fmt::format(" -l {}", name.substr(2))
@@ -185,15 +183,15 @@ std::string fish_option(const std::string& start, const ArgumentOutline& o) {
   return fmt::format("{}{} -d {}\n", text, o.value.empty() ? "" : fish_value(o), fish_text(o.doc));
 }
 
-std::string fish(const std::vector<VerbOutline>& verbs) {
+std::string fish(const Program& program) {
   std::string text = "# Completion of `dem` in fish; made by `dem completion fish`.\n";
   text += "complete -c dem -f\n";
-  for (const auto& verb : verbs)
+  for (const auto& verb : program.commands)
     text += fmt::format("complete -c dem -n __fish_use_subcommand -a {} -d {}\n", verb.name,
                         fish_text(verb.summary));
   text += "complete -c dem -n __fish_use_subcommand -l version -d 'version of dem'\n";
   text += "complete -c dem -s h -l help -d 'help and examples'\n";
-  for (const auto& verb : verbs) {
+  for (const auto& verb : program.commands) {
     const std::string start =
         fmt::format("complete -c dem -n '__fish_seen_subcommand_from {}'", verb.name);
     for (const auto& o : verb.options) text += fish_option(start, o);
@@ -208,8 +206,8 @@ std::string fish(const std::vector<VerbOutline>& verbs) {
 
 std::vector<std::string> shells() { return {"bash", "zsh", "fish"}; }
 
-std::string completion(const std::string& shell, const std::vector<VerbOutline>& verbs) {
-  return shell == "bash" ? bash(verbs) : shell == "zsh" ? zsh(verbs) : fish(verbs);
+std::string completion(const std::string& shell, const Program& program) {
+  return shell == "bash" ? bash(program) : shell == "zsh" ? zsh(program) : fish(program);
 }
 
 }  // namespace dem::app

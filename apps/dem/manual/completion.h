@@ -4,12 +4,12 @@
 #include <string>
 #include <vector>
 
-#include "manual/outline.h"
+#include "cli/command.h"
 
 namespace dem::app {
 
 /// For shells named "bash", "zsh" and "fish".
 std::vector<std::string> shells();
-std::string completion(const std::string& shell, const std::vector<VerbOutline>& verbs);
+std::string completion(const std::string& shell, const Program& program);
 
 }  // namespace dem::app

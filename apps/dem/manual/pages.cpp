@@ -3,51 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <sstream>
 #include <string_view>
 
+#include "cli/help.h"
 #include "dem/generators.h"
 #include "dem/io/methods.h"
 
 namespace dem::app {
 namespace {
 
-/// The end of a help text: the lines below "Examples:", and what follows them.
-struct Footer {
-  std::string examples, notes;
-};
-
-Footer read_footer(const std::string& text) {
-  Footer footer;
-  bool in_examples = false;
-  std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line);) {
-    if (line == "Examples:") {
-      in_examples = true;
-      continue;
-    }
-    in_examples &= line.starts_with("  ");
-    if (in_examples)
-      footer.examples += line.substr(2) + "\n";
-    else if (!line.empty() || !footer.notes.empty())
-      footer.notes += line + "\n";
-  }
-  return footer;
-}
-
-std::string names_text(const ArgumentOutline& o) {
+std::string names_text(const Option& o) {
   std::string text = fmt::format("{}", fmt::join(o.names, ", "));
   if (!o.value.empty()) text += " " + o.value;
-  return text;
-}
-
-/// What is said of an option beside its doc.
-std::string remarks(const ArgumentOutline& a) {
-  std::string text;
-  if (a.repeats) text += a.names[0].starts_with("-") ? "; may be repeated" : "; one or more";
-  if (a.required && a.names[0].starts_with("-")) text += "; required";
-  if (a.doc.find("may be repeated") != std::string::npos) text.clear();
-  if (!a.default_text.empty()) text += fmt::format(" [{}]", a.default_text);
   return text;
 }
 
@@ -89,7 +56,7 @@ std::string roff_head(const std::string& name, const std::string& summary,
       roff(upper), DEM_VERSION, roff(title), roff(summary), roff(synopsis));
 }
 
-std::string roff_list(const std::vector<ArgumentOutline>& list, const std::string& group) {
+std::string roff_list(const std::deque<Option>& list, const std::string& group) {
   std::string text;
   for (const auto& a : list)
     if (a.group == group)
@@ -97,10 +64,21 @@ std::string roff_list(const std::vector<ArgumentOutline>& list, const std::strin
   return text;
 }
 
-std::string roff_footer(const Footer& footer) {
+/// Examples, with two spaces less before each line.
+std::string unindented(const std::string& text) {
+  std::string out;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = text.find('\n', begin) + 1;
+    out += text.substr(begin + 2, end - begin - 2);
+    begin = end;
+  }
+  return out;
+}
+
+std::string roff_ending(const std::string& examples, const std::string& notes) {
   std::string text;
-  if (!footer.notes.empty()) text += ".SH NOTES\n" + roff_block(footer.notes);
-  if (!footer.examples.empty()) text += ".SH EXAMPLES\n" + roff_block(footer.examples);
+  if (!notes.empty()) text += ".SH NOTES\n" + roff_block(notes);
+  if (!examples.empty()) text += ".SH EXAMPLES\n" + roff_block(unindented(examples));
   return text;
 }
 
@@ -126,7 +104,7 @@ std::string markdown_block(const std::string& kind, const std::string& text) {
   return fmt::format("```{}\n{}```\n", kind, text);
 }
 
-std::string markdown_list(const std::vector<ArgumentOutline>& list, const std::string& group) {
+std::string markdown_list(const std::deque<Option>& list, const std::string& group) {
   const bool positional = !list.empty() && !list[0].names[0].starts_with("-");
   std::string text = fmt::format("| {} | |\n|---|---|\n", positional ? "argument" : "option");
   for (const auto& a : list)
@@ -135,9 +113,8 @@ std::string markdown_list(const std::vector<ArgumentOutline>& list, const std::s
   return text;
 }
 
-std::string markdown_footer(const Footer& footer) {
-  if (footer.notes.empty()) return "";
-  return fmt::format("\n## Notes\n{}", markdown_block("text", footer.notes));
+std::string markdown_notes(const std::string& notes) {
+  return notes.empty() ? "" : fmt::format("\n## Notes\n{}", markdown_block("text", notes));
 }
 
 /// A row of the table of methods or of generators.
@@ -174,46 +151,51 @@ std::string markdown_tables() {
 
 }  // namespace
 
-std::string man_page(const VerbOutline& verb) {
+std::string man_page(const Command& verb) {
   std::string text = roff_head("dem " + verb.name, verb.summary, verb.synopsis());
   if (!verb.arguments.empty())
     text += ".SH ARGUMENTS\n" + roff_list(verb.arguments, verb.arguments[0].group);
   text += ".SH OPTIONS\n";
-  for (const auto& group : groups(verb))
+  for (const auto& group : verb.groups())
     text += (group == "Options" ? "" : fmt::format(".SS {}\n", roff(group))) +
             roff_list(verb.options, group);
-  text += roff_footer(read_footer(verb.footer));
+  text += roff_ending(verb.examples, verb.notes);
   return text + ".SH SEE ALSO\n.BR dem (1)\n";
 }
 
-std::string man_page(const std::vector<VerbOutline>& verbs, const std::string& about,
-                     const std::string& footer) {
-  std::string text = roff_head("dem", about, "dem VERB [OPTIONS] ...") + ".SH VERBS\n";
-  for (const auto& verb : verbs)
-    text += fmt::format(".TP\n.BR dem\\-{} (1)\n{}\n", roff(verb.name), roff(verb.summary));
-  return text + roff_footer(read_footer(footer));
+std::string man_page(const Program& program) {
+  std::string text = roff_head("dem", program.summary, "dem VERB [OPTIONS] ...") + ".SH VERBS\n";
+  for (const auto& group : program.groups()) {
+    text += fmt::format(".SS {}\n", roff(group));
+    for (const auto& verb : program.commands)
+      if (verb.group == group)
+        text += fmt::format(".TP\n.BR dem\\-{} (1)\n{}\n", roff(verb.name), roff(verb.summary));
+  }
+  return text + roff_ending(program.examples, program.notes);
 }
 
-std::string markdown_page(const VerbOutline& verb) {
-  const Footer footer = read_footer(verb.footer);
+std::string markdown_page(const Command& verb) {
   std::string text = fmt::format("# dem {}\n{}.\n\n", verb.name, verb.summary);
   text += markdown_block("text", verb.synopsis() + "\n");
-  if (!footer.examples.empty()) text += "\n## Examples\n" + markdown_block("sh", footer.examples);
+  text += "\n## Examples\n" + markdown_block("sh", unindented(verb.examples));
   if (!verb.arguments.empty())
     text += "\n## Arguments\n" + markdown_list(verb.arguments, verb.arguments[0].group);
-  for (const auto& group : groups(verb))
+  for (const auto& group : verb.groups())
     text += fmt::format("\n## {}\n{}", group, markdown_list(verb.options, group));
-  text += markdown_footer(footer);
+  text += markdown_notes(verb.notes);
   return text + (verb.name == "methods" ? markdown_tables() : "");
 }
 
-std::string markdown_page(const std::vector<VerbOutline>& verbs, const std::string& about,
-                          const std::string& footer) {
-  const Footer end = read_footer(footer);
-  std::string text = fmt::format("# dem\n{}\n\n| verb | does |\n|---|---|\n", about);
-  for (const auto& verb : verbs)
-    text += fmt::format("| [dem {0}]({0}.md) | {1} |\n", verb.name, cell(verb.summary));
-  return text + "\n" + markdown_block("sh", end.examples) + markdown_footer(end);
+std::string markdown_page(const Program& program) {
+  std::string text = fmt::format("# dem\n{}\n", program.summary);
+  for (const auto& group : program.groups()) {
+    text += fmt::format("\n| {} | |\n|---|---|\n", group);
+    for (const auto& verb : program.commands)
+      if (verb.group == group)
+        text += fmt::format("| [dem {0}]({0}.md) | {1} |\n", verb.name, cell(verb.summary));
+  }
+  return text + "\n" + markdown_block("sh", unindented(program.examples)) +
+         markdown_notes(program.notes);
 }
 
 }  // namespace dem::app

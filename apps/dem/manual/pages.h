@@ -2,20 +2,17 @@
 // A page of the manual for each verb, and one for the program.
 
 #include <string>
-#include <vector>
 
-#include "manual/outline.h"
+#include "cli/command.h"
 
 namespace dem::app {
 
-/// In roff, for man. `about` and `footer` are those of the program's help.
-std::string man_page(const VerbOutline& verb);
-std::string man_page(const std::vector<VerbOutline>& verbs, const std::string& about,
-                     const std::string& footer);
+/// In roff, for man.
+std::string man_page(const Command& verb);
+std::string man_page(const Program& program);
 
 /// In Markdown.
-std::string markdown_page(const VerbOutline& verb);
-std::string markdown_page(const std::vector<VerbOutline>& verbs, const std::string& about,
-                          const std::string& footer);
+std::string markdown_page(const Command& verb);
+std::string markdown_page(const Program& program);
 
 }  // namespace dem::app

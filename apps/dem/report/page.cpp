@@ -2,7 +2,6 @@
 
 #include <fmt/chrono.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <ctime>
@@ -43,18 +42,16 @@ std::string name_of(const std::string& path) {
   return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
 }
 
-void add_report_option(CLI::App& verb, std::string& path) {
-  verb.add_option("--report", path, "also write a page to look at: pictures, charts, tables")
-      ->check(takes("new file"))
-      ->type_name("FILE.html");
+void add_report_option(Command& verb, std::string& path) {
+  verb.option("--report", path, "FILE.html", "Also write a page with pictures, charts and tables")
+      .kind("new file");
 }
 
 void check_report(const std::string& path, bool overwrite) {
   if (path.empty()) return;
   const std::string extension = std::filesystem::path(path).extension().string();
   check_writable(path, overwrite);
-  if (extension != ".html" && extension != ".htm")
-    throw std::invalid_argument(fmt::format("report = {}; must be a file name in .html", path));
+  if (extension != ".html" && extension != ".htm") refuse("--report", path, "a file name in .html");
 }
 
 void Stopwatch::lap(std::string step) {

@@ -14,7 +14,7 @@
 namespace dem::app {
 
 /// --report FILE.html
-void add_report_option(CLI::App& verb, std::string& path);
+void add_report_option(Command& verb, std::string& path);
 
 /// Throws when a report could not be written there: to be asked before long work. "": none is
 /// wanted.

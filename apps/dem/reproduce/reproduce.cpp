@@ -2,7 +2,6 @@
 
 #include "reproduce/reproduce.h"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
@@ -136,33 +135,28 @@ int reproduce(const ReproduceOptions& o, Shell& shell) {
 
 }  // namespace
 
-void add_reproduce(CLI::App& app, Shell& shell) {
+void add_reproduce(Program& program, Shell& shell) {
   const auto o = std::make_shared<ReproduceOptions>();
-  auto* verb =
-      add_verb(app, shell, "reproduce", "A published result, end to end: paper value beside ours",
-               "  dem reproduce mount-washington results            # 35721 of 1025 x 1025 cells\n"
-               "  dem reproduce mount-washington results --tile N44W072.hgt\n"
-               "  dem reproduce n36e008 results --data ~/srtm       # Sobel edges, real voids\n"
-               "  dem reproduce figures pictures                    # parameter pictures",
-               [o, &shell] { return reproduce(*o, shell); });
-  verb->add_option("WHAT", o->what, "mount-washington, n36e008 or figures")
-      ->required()
-      ->check(one_of({"mount-washington", "n36e008", "figures"}))
-      ->type_name("");
-  verb->add_option("DIR", o->dir, "folder for pictures and curves")
-      ->required()
-      ->check(takes("new folder"))
-      ->type_name("");
-  verb->add_option("-t,--tile", o->tile, "the elevations, any path GDAL opens")
-      ->check(takes("raster"))
-      ->type_name("FILE");
-  verb->add_option("--data", o->data, "folder with tiles; else $DEM_TESTDATA, else ../shared/data")
-      ->check(takes("folder"))
-      ->type_name("DIR");
-  verb->add_option("--repeats", o->repeats, "runs of each measurement; the median time counts")
-      ->check(CLI::Range(1, 1000).description(""))
-      ->type_name("N")
-      ->capture_default_str();
+  Command& verb = program.add(
+      "reproduce", kMeasure, "Repeat a published experiment and compare its numbers with ours",
+      "  dem reproduce mount-washington results            # 35721 of 1025 x 1025 cells\n"
+      "  dem reproduce mount-washington results --tile N44W072.hgt\n"
+      "  dem reproduce n36e008 results --data ~/srtm       # Sobel edges, real voids\n"
+      "  dem reproduce figures pictures                    # pictures of the parameters");
+  verb.work = [o, &shell] { return reproduce(*o, shell); };
+  verb.argument("WHAT", o->what, "Experiment: mount-washington, n36e008 or figures")
+      .one_of({"mount-washington", "n36e008", "figures"})
+      .must_be_given();
+  verb.argument("DIR", o->dir, "Folder for pictures and curves").kind("new folder").must_be_given();
+  verb.option("-t,--tile", o->tile, "FILE", "DEM to use, in any format that GDAL opens")
+      .kind("raster");
+  verb.option("--data", o->data, "DIR",
+              "Folder of tiles ($DEM_TESTDATA if it is set, otherwise ../shared/data)")
+      .kind("folder");
+  verb.option("--repeats", o->repeats, "N",
+              "Number of runs of each measurement; the median time is reported")
+      .within(1, 1000)
+      .show_default();
 }
 
 }  // namespace dem::app
