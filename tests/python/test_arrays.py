@@ -155,7 +155,7 @@ def test_other_calls_tell_what_is_wrong(hills, tmp_path):
             (lambda: libdem.grid([np.nan], [1], [1]), "no point has a finite x, y and z"),
             (lambda: libdem.grid([1], [1], [1], bounds=(0, 0, 9, 9)), "bounds needs cell"),
             (lambda: libdem.grid([1], [1], [1], bounds=(0, 0, 9), cell=1), "must be west, south, east, north"),
-            (lambda: libdem.supersample(hills, 1), "factor = 1; must be a number in (1, 2147483646]"),
+            (lambda: libdem.supersample(hills, 1), "factor = 1; must be a number in"),
             (lambda: libdem.generate("nois"), 'unknown generator "nois"'),
             (lambda: libdem.generate("noise", 0), "rows = 0; must be a whole number from 1 up"),
             (lambda: libdem.generate("sketch"), "sketch needs an image"),
