@@ -139,7 +139,7 @@ class Refusals(ReportTest):
         self.write("zero.asc", asc_text([[0] * SIDE] * SIDE))
         self.write("small.asc", asc_text([[1, 2]]))
         self.fails(2, "evaluate", TRUTH, TRUTH, "--sigma", "small.asc", says=["is 2 x 1 cells"])
-        self.fails(2, "evaluate", TRUTH, TRUTH, "--sigma", "zero.asc", says=["standard deviation above 0"])
+        self.fails(2, "evaluate", TRUTH, TRUTH, "--sigma", "zero.asc", says=["zero.asc", "sigma is above 0 in no cell"])
 
 
 @slow
