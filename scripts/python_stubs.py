@@ -21,7 +21,7 @@ TYPES = {
     "water": "Path", "report_holes": "bool", "threads": "int", "progress": "Progress", "factor": "float",
     "nodes": "bool | None",
     "bounds": "tuple[float, float, float, float] | None", "cell": "str | float",
-    "point_sigma": "npt.ArrayLike | None", "point_weight": "npt.ArrayLike | None",
+    "sigma": "npt.ArrayLike | None", "point_sigma": "npt.ArrayLike | None", "point_weight": "npt.ArrayLike | None",
     "reject_outliers": "float", "snap": "bool", "passes": "int",
     "keep": "float | None", "count": "int | None", "every": "int | None", "edges": "float | None",
     "voids": "float | None", "tracks": "int | None", "contours_m": "float | None", "greedy": "int | None",
@@ -147,7 +147,7 @@ def stubs():
                                    "Any" if kind is object else kind.__name__)
             out.append(f"    {name}: {kind}")
     out += ["class Scores(types.SimpleNamespace):", "    all: Any", "    filled: Any", "    unfilled_cells: int",
-            "    spectrum: Any", "class ProgressBar:",
+            "    calibration: Any", "    spectrum: Any", "class ProgressBar:",
             "    def __init__(self, bar: Any = None, **options: Any) -> None: ...",
             "    def __call__(self, part: float, what: str) -> None: ...", "    def close(self) -> None: ...",
             "    def __enter__(self) -> ProgressBar: ...", "    def __exit__(self, *_: Any) -> None: ...",

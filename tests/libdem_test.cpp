@@ -246,7 +246,7 @@ TEST(LibdemC, EvaluatesTheFilledCellsAlone) {
   const Dem holes = made(z);
   const Dem got = filled(holes, chosen("spline"));
   auto moved = heights(got);
-  for (std::size_t i = 0; i < z.size(); ++i) moved[i] += std::isfinite(z[i]) ? 0 : 3;
+  for (std::size_t i = 0; i < z.size(); ++i) moved[i] += std::isfinite(z[i]) ? 0.0F : 3.0F;
   const Dem truth = made(moved);
   libdem_errors errors;
   libdem_error error;

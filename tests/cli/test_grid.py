@@ -164,7 +164,7 @@ class BadInput(CliTest):
             "": ["is empty"],
             "x,y,z\n": ["holds no points"],
             "x,y,z\n1,2,x3\n": ["line 2", "z = x3"],
-            "x,y,z\n1,2,3\n": ["1 point covers no area", "--bounds"],
+            "x,y,z\n1,2,3\n": ["1 point covers no area", "bounds and cell"],
             "x,y,z\n1,2,3\n4,2,3\n": ["2 points cover no area"],
             "lon,lat,z\n46,121,3\n": ["wrong way round"],
             "a,b,c\n1,2,3\n": ["--x-field", "a, b, c"],

@@ -150,7 +150,7 @@ def test_other_calls_tell_what_is_wrong(hills, tmp_path):
             (lambda: libdem.sample(hills, keep=2), r"keep = 2; must be in \(0, 1\]"),
             (lambda: libdem.sample(hills, every=1.5), "every = 1.5; must be a whole number above 0"),
             (lambda: libdem.evaluate(hills, hills[1:]), r"got has shape \(39, 50\); must be \(40, 50\), as truth"),
-            (lambda: libdem.evaluate(hills, hills, hills), "every cell is known in sampled"),
+            (lambda: libdem.evaluate(hills, hills, hills), "sampled knows every cell"),
             (lambda: libdem.grid([1, 2], [1], [1, 2]), "y has 1 values; must have 2, as z"),
             (lambda: libdem.grid([np.nan], [1], [1]), "no point has a finite x, y and z"),
             (lambda: libdem.grid([1], [1], [1], bounds=(0, 0, 9, 9)), "bounds needs cell"),

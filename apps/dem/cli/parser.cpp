@@ -46,6 +46,8 @@ class Reader {
     }
     give_arguments();
     for (const auto& [option, text] : given_) option->accept(text);
+    for (const Option& option : command_.options)
+      if (option.required && option.count == 0) fail(option.name() + " is missing");
     return Parsed::all;
   }
 
