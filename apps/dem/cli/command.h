@@ -99,8 +99,9 @@ class Option {
   template <class T>
   void bind(T& variable) {
     set_ = [&variable, first = true](const std::string& text) mutable {
+      [[maybe_unused]] const bool was_first = std::exchange(first, false);
       if constexpr (requires { variable.emplace_back(); })
-        if (std::exchange(first, false)) variable.clear();  // what it held was the default
+        if (was_first) variable.clear();  // what it held was the default
       return read_value(text, variable);
     };
     now_ = [&variable] { return text_of(variable); };

@@ -247,7 +247,7 @@ void check_hgt(const std::string& path, Size size, const GeoRef& ref, const Writ
   if (options.type.value_or(CellType::int16) != CellType::int16)
     throw IoError(path, "an .hgt holds int16 only");
   if (options.nodata.value_or(kVoid) != kVoid)
-    throw IoError(path, fmt::format("no-data {}; an .hgt has {} only", *options.nodata, kVoid));
+    throw IoError(path, fmt::format("nodata {}; an .hgt has {} only", *options.nodata, kVoid));
   if (!options.metadata.empty()) throw IoError(path, "an .hgt holds no metadata");
 
   // Its place is in its name alone, so the two must not contradict each other.

@@ -49,7 +49,7 @@ std::optional<T> choose_nodata(const std::string& path, const Source& source,
   if (options.nodata) {
     if (!fits(*options.nodata))
       throw IoError(path,
-                    fmt::format("no-data {} does not fit the type, {} to {}", *options.nodata,
+                    fmt::format("nodata {} does not fit the type, {} to {}", *options.nodata,
                                 std::numeric_limits<T>::lowest(), std::numeric_limits<T>::max()));
     return T(*options.nodata);
   }
