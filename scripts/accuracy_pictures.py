@@ -91,7 +91,8 @@ def main():
             truth = read(folder / "truth.tif").astype("f8")
             known = read(folder / "known.tif").astype("f8") == truth
             errors = [read(folder / f"{n}.tif") - truth for n in ("filled", "rival")]
-            shown = numpy.where(known, grey(hillshade(folder, "truth")), numpy.array([[[40]], [[40]], [[90]]])).astype("u1")
+            removed = numpy.array([[[40]], [[40]], [[90]]])
+            shown = numpy.where(known, grey(hillshade(folder, "truth")), removed).astype("u1")
             pictures = [shown] + [grey(hillshade(folder, n)) for n in ("truth", "filled", "rival")]
             pictures += [colours(e, metres) for e in errors]
             strip = numpy.concatenate([panel(p, col, row) for p in pictures], axis=2)

@@ -34,9 +34,9 @@ SIDE = 512  # cells of the part of a truth that is looked at
 GMT_SURFACE = "gmt surface {points} -bi3d -R0/{last_col}/0/{last_row} -I1 -T%s -Gfilled.nc"
 GDAL_GRID = ("gdal_grid -q -txe 0 {cols} -tye {rows} 0 -outsize {cols} {rows} -ot Float32 -of GTiff -a %s "
              "-l points {vrt} filled.tif")
-SAGA_MBA = ("saga_cmd -f=s grid_spline 4 -SHAPES points.shp -FIELD Z -METHOD 0 -TARGET_DEFINITION 0 -TARGET_USER_SIZE {cell} "
-            "-TARGET_USER_XMIN {first} -TARGET_USER_XMAX {last_x} -TARGET_USER_YMIN {first} -TARGET_USER_YMAX {last_y} "
-            "-TARGET_USER_FITS 0 -TARGET_OUT_GRID filled.sgrd")
+SAGA_MBA = ("saga_cmd -f=s grid_spline 4 -SHAPES points.shp -FIELD Z -METHOD 0 -TARGET_DEFINITION 0 "
+            "-TARGET_USER_SIZE {cell} -TARGET_USER_XMIN {first} -TARGET_USER_XMAX {last_x} -TARGET_USER_YMIN {first} "
+            "-TARGET_USER_YMAX {last_y} -TARGET_USER_FITS 0 -TARGET_OUT_GRID filled.sgrd")
 SAGA_POINTS = "saga_cmd -f=s io_shapes 3 -FILENAME points.txt -HEADLINE 1 -POINTS points.shp"
 DEM_FILL = "{dem} fill {in} filled.tif --quiet --threads 1 --type float32 --method %s"
 INVDIST = "invdistnn:radius={search}:max_points=12:nodata=-9999"
@@ -167,8 +167,8 @@ def contours(args, folder, limits):
             error, empty = rmse((filled - truth)[~given])
             note = f" ({100 * empty:.1f} % of the cells empty)" if empty > 0 else ""
             rest = filled[~given & ~numpy.isnan(filled)]
-            print(f"| {name} | {interval} m | {method} | {error:.2f}{note} | {peak(rest, float(interval)):.2f} | {cpu:.2f} |",
-                  flush=True)
+            print(f"| {name} | {interval} m | {method} | {error:.2f}{note} | {peak(rest, float(interval)):.2f} "
+                  f"| {cpu:.2f} |", flush=True)
 
 
 def random(args, folder, limits):
@@ -195,7 +195,8 @@ def ground(x, y):
     for length in 1000 / 2 ** numpy.arange(8):
         for _ in range(3):
             angle, phase = waves.uniform(0, 2 * numpy.pi, 2)
-            z += 0.08 * length * numpy.sin(2 * numpy.pi * (x * numpy.cos(angle) + y * numpy.sin(angle)) / length + phase)
+            along = x * numpy.cos(angle) + y * numpy.sin(angle)
+            z += 0.08 * length * numpy.sin(2 * numpy.pi * along / length + phase)
     return z
 
 
@@ -213,8 +214,9 @@ def speed(args, folder, limits):
     as_text(folder)
     centres = numpy.arange(side) + 0.5
     truth = ground(*numpy.meshgrid(centres, centres[::-1]))
-    problem = {"dem": args.dem, "cols": side, "rows": side, "vrt": "points.vrt", "cell": 1, "first": 0.5, "last_x": side - 0.5,
-               "last_y": side - 0.5, "search": 4 * side / points ** 0.5, "lattice": f"--bounds 0,0,{side},{side} --cell 1m"}
+    problem = {"dem": args.dem, "cols": side, "rows": side, "vrt": "points.vrt", "cell": 1, "first": 0.5,
+               "last_x": side - 0.5, "last_y": side - 0.5, "search": 4 * side / points ** 0.5,
+               "lattice": f"--bounds 0,0,{side},{side} --cell 1m"}
     print("| points | lattice | method | RMSE, m | CPU s |\n|---:|---|---|---:|---:|")
     for method, filled, cpu, why in contest(SPEED, problem, folder, limits):
         row = f"| {points:,} | {side} x {side} | {method} | "
@@ -222,7 +224,8 @@ def speed(args, folder, limits):
             print(row + f"{why} | |", flush=True)
             continue
         error, empty = rmse(filled - truth)
-        print(row + f"{error:.3f}" + (f" ({100 * empty:.1f} % empty)" if empty > 0 else "") + f" | {cpu:.1f} |", flush=True)
+        note = f" ({100 * empty:.1f} % empty)" if empty > 0 else ""
+        print(row + f"{error:.3f}{note} | {cpu:.1f} |", flush=True)
 
 
 def main():

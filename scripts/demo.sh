@@ -12,8 +12,8 @@ cd "$(dirname "$0")/.."
 
 scripts/setup.sh
 
-cmake --preset release -B build/demo -DDEM_BUILD_TESTS=OFF -DDEM_BUILD_BENCH=OFF
-cmake --build build/demo
+cmake --preset release -B build/demo -DDEM_BUILD_TESTS=OFF -DDEM_BUILD_BENCH=OFF -DDEM_BUILD_PYTHON=OFF
+cmake --build build/demo --target dem_cli
 
 tile="${DEM_TESTDATA:-../shared/data}/mtwashington_1025_3s.tif"
 if [[ ! -f "$tile" ]]; then

@@ -4,14 +4,14 @@
 #
 #   scripts/figures.sh [TILE]   default: mtwashington_1025_3s.tif in $DEM_TESTDATA or ../shared/data
 #
-# Needs python3-numpy and python3-gdal beside what scripts/setup.sh installs.
+# Needs python3-numpy and python3-gdal in addition to what scripts/setup.sh installs.
 set -euo pipefail
 tile=${1:+"$(realpath "$1")"}
 cd "$(dirname "$0")/.."
 
 tile=${tile:-"${DEM_TESTDATA:-../shared/data}/mtwashington_1025_3s.tif"}
 if [[ ! -f "$tile" ]]; then
-  echo "figures: there is no $tile; README says where the tile is to be had" >&2
+  echo "figures: there is no $tile; README says where to download the tile" >&2
   exit 1
 fi
 

@@ -45,16 +45,17 @@ def main():
             values = tile(found)
             values.tofile(tiles / name)
             print(f"{name} from {found.name}: {(values == -32768).mean():.3%} unknown")
-        with LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=None) as cluster, Client(cluster) as client:
+        with LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=None) as cluster, \
+                Client(cluster) as client:
             report = fill_mosaic(tiles, pathlib.Path(folder, "out"), client)
             most = max(client.run(peak_memory).values())
     cells, cpu = report["cells"], report["cpu_seconds"]
     all_cpu = sum(cpu.values())
     print(f"{cells} cells, {report['unknown']} unknown ({report['unknown'] / cells:.3%}), {report['voids']} voids; "
           f"{workers} worker{'s' * (workers > 1)}, {report['seconds']['all']:.1f} s, at most {most:.0f} MB to a worker")
-    for step, seconds in cpu.items():
-        print(f"  {step:6} {seconds:7.2f} s of processor, {cells / seconds / 1e6:7.2f} million cells of the mosaic a second")
-    print(f"  {'all':6} {all_cpu:7.2f} s of processor, {cells / all_cpu / 1e6:7.2f} million cells of the mosaic a second")
+    for step, seconds in {**cpu, "all": all_cpu}.items():
+        print(f"  {step:6} {seconds:7.2f} s of processor, "
+              f"{cells / seconds / 1e6:7.2f} million cells of the mosaic a second")
     print(f"  filling alone: {report['filled'] / cpu['fill'] / 1e3:.1f} thousand unknown cells a second")
     world = TILES * (SIDE - 1) ** 2
     hours = world / (cells / all_cpu) / 3600

@@ -9,6 +9,7 @@ import keyword
 import sys
 
 import libdem
+from libdem import _tables
 
 # What the parameters are, by name.
 TYPES = {
@@ -18,10 +19,10 @@ TYPES = {
     "crs": "str", "inner_only": "bool", "max_area_km2": "float | None", "max_distance_m": "float | None",
     "min_cells": "int | None", "where": "str", "region": "Path", "whole": "bool", "aux": "Path | Sequence[Path]",
     "water": "Path", "report_holes": "bool", "threads": "int", "progress": "Progress", "factor": "float",
-    "preserve": 'Literal["heights", "block-mean"]', "nodes": "bool | None",
+    "nodes": "bool | None",
     "bounds": "tuple[float, float, float, float] | None", "cell": "str | float",
-    "point_sigma": "npt.ArrayLike | None", "point_weight": "npt.ArrayLike | None",
-    "combine": 'Literal["mean", "min", "max", "median"]', "reject_outliers": "float", "snap": "bool", "passes": "int",
+    "sigma": "npt.ArrayLike | None", "point_sigma": "npt.ArrayLike | None", "point_weight": "npt.ArrayLike | None",
+    "reject_outliers": "float", "snap": "bool", "passes": "int",
     "keep": "float | None", "count": "int | None", "every": "int | None", "edges": "float | None",
     "voids": "float | None", "tracks": "int | None", "contours_m": "float | None", "greedy": "int | None",
     "max_error_m": "float | None", "seed": "int", "shape": "int | tuple[int, int] | None",
@@ -33,8 +34,11 @@ TYPES = {
 RETURNS = {"fill": "Filled", "supersample": "Filled", "grid": "Filled", "sample": "Dem", "generate": "Dem",
            "erode": "Eroded", "evaluate": "Scores", "render": "npt.NDArray[np.uint8]", "read": "Dem", "write": "None"}
 PROPERTIES = {"z": "npt.NDArray[np.float32]", "known": "npt.NDArray[np.bool_]",
-              "elevation": "npt.NDArray[np.floating[Any]]", "shape": "tuple[int, int]", "spacing": "tuple[float, float]",
-              "to_world": "list[float]", "crs": "str", "dtype": "str", "nodata": "float | None"}
+              "elevation": "npt.NDArray[np.floating[Any]]", "shape": "tuple[int, int]",
+              "spacing": "tuple[float, float]", "to_world": "list[float]", "crs": "str", "dtype": "str",
+              "nodata": "float | None"}
+# Parameters that choose one of the names of a field: (options, field).
+CHOICES = {"preserve": ("supersample", "preserve"), "combine": ("bin", "combine")}
 KINDS = {"number": "float", "integer": "int", "boolean": "bool"}
 
 HEAD = '''\
@@ -60,12 +64,19 @@ __version__: str
 def type_of(field):
     if field.type in KINDS:
         return KINDS[field.type]
+    if field.type == "text":
+        return "str"
     choices = f"Literal[{', '.join(repr(choice) for choice in field.choices)}]"
     return f"bool | {choices}" if field.name == "sigma" else choices
 
 
+def chosen_type(name):
+    options, field = CHOICES[name]
+    return type_of(next(f for f in _tables.option_fields()[options] if f.name == field))
+
+
 def parameter(p):
-    text = f"{p.name}: {TYPES[p.name]}"
+    text = f"{p.name}: {TYPES[p.name] if p.name in TYPES else chosen_type(p.name)}"
     return text if p.default is inspect.Parameter.empty else f"{text} = {p.default!r}"
 
 
@@ -101,7 +112,8 @@ def overloads(name, parameter_name, rows, default):
     """The default's signature comes first: only it may leave the parameter out. The last one is for names
     that are not known before the program runs."""
     rows = sorted(rows, key=lambda row: row[1] != default)
-    any_name = function(name, (parameter_name, "str", False), (), "@overload\n").replace(") ->", ", **settings: Any) ->")
+    any_name = function(name, (parameter_name, "str", False), (), "@overload\n")
+    any_name = any_name.replace(") ->", ", **settings: Any) ->")
     return "".join(function(name, (parameter_name, text, row_name == default), fields, "@overload\n")
                    for text, row_name, fields in rows) + any_name
 
@@ -123,8 +135,9 @@ def stubs():
     out = [HEAD, "class CellOrigin(enum.IntEnum):"]
     out += [f"    {origin.name} = {origin.value}" for origin in libdem.CellOrigin]
     out += of_class(libdem.Dem)
-    out.append("    def __init__(self, z: npt.ArrayLike, known: npt.ArrayLike | None = None, nodata: float | None = None, "
-               "spacing: tuple[float, float] | None = None, to_world: Sequence[float] | None = None, crs: str = '') -> None: ...")
+    out.append("    def __init__(self, z: npt.ArrayLike, known: npt.ArrayLike | None = None, "
+               "nodata: float | None = None, spacing: tuple[float, float] | None = None, "
+               "to_world: Sequence[float] | None = None, crs: str = '') -> None: ...")
     for cls in libdem.Filled, libdem.Eroded, libdem.Field, libdem.Preset, libdem.Method:
         out += ["@dataclasses.dataclass(frozen=True)"] + of_class(cls)
         annotations = {"dem": "Dem", "report": "dict[str, Any]", "fields": "tuple[Field, ...]",
@@ -134,7 +147,7 @@ def stubs():
                                    "Any" if kind is object else kind.__name__)
             out.append(f"    {name}: {kind}")
     out += ["class Scores(types.SimpleNamespace):", "    all: Any", "    filled: Any", "    unfilled_cells: int",
-            "    spectrum: Any", "class ProgressBar:",
+            "    calibration: Any", "    spectrum: Any", "class ProgressBar:",
             "    def __init__(self, bar: Any = None, **options: Any) -> None: ...",
             "    def __call__(self, part: float, what: str) -> None: ...", "    def close(self) -> None: ...",
             "    def __enter__(self) -> ProgressBar: ...", "    def __exit__(self, *_: Any) -> None: ...",

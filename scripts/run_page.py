@@ -33,8 +33,8 @@ def main():
         path = f"{os.path.dirname(dem)}:{os.environ['PATH']}"
 
         def run(match):
-            done = subprocess.run(["bash", "-euo", "pipefail", "-c", match["command"]], cwd=work, text=True, timeout=120,
-                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+            done = subprocess.run(["bash", "-euo", "pipefail", "-c", match["command"]], cwd=work, text=True,
+                                  timeout=120, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                                   env={**os.environ, "PATH": path, "LC_ALL": "C.UTF-8"})
             if done.returncode != 0:
                 faults.append(f"this fails:\n{match['command']}{done.stdout}")

@@ -9,6 +9,7 @@
 #include "numeric/random.h"
 
 namespace dem {
+using namespace numeric;
 namespace {
 
 /// A few known cells (one in `sparse`) with heights of few values, so that ties are common.

@@ -10,6 +10,7 @@
 #include "numeric/random.h"
 
 namespace dem {
+using namespace numeric;
 namespace {
 
 using ::testing::ElementsAre;

@@ -12,6 +12,7 @@
 #include "numeric/random.h"
 
 namespace dem {
+using namespace numeric;
 namespace {
 
 using testing::HasSubstr;

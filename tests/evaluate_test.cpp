@@ -12,6 +12,7 @@
 #include "numeric/random.h"
 
 namespace dem {
+using namespace numeric;
 namespace {
 
 constexpr Spacing kCell{1, 1};

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <stdexcept>
 
 namespace dem {
@@ -115,6 +117,125 @@ TEST(Apply, RefusesWithTheFactAndLeavesTheValue) {
   EXPECT_EQ(o.seed, 1u);
   EXPECT_FALSE(o.fast);
   EXPECT_EQ(o.shape, Shape::kSquare);
+}
+
+struct Wishes {
+  std::string layer{};
+  std::size_t cells = 5;
+  double factor = 2;
+  std::optional<double> nodata;
+  std::optional<int> band;
+  std::optional<std::size_t> least;
+  std::optional<std::uint64_t> seed;
+  std::optional<bool> nodes;
+  std::optional<std::string> tile;
+  std::optional<Shape> shape;
+};
+
+std::vector<Field> fields(Wishes& w) {
+  return {{"layer", w.layer, "of the file"},
+          {"cells", w.cells, {4, INFINITY}, "cells", "how many"},
+          {"factor", w.factor, {1, 9, true}, "", "how fine"},
+          {"nodata", w.nodata, {.or_nan = true}, "m", "means none"},
+          {"band", w.band, {1, 9}, "", "of the file"},
+          {"least", w.least, {0, INFINITY}, "", "of a hole"},
+          {"seed", w.seed, "of the noise"},
+          {"nodes", w.nodes, "or cells"},
+          {"tile", w.tile, "of the file"},
+          {"shape", w.shape, {"square", "diamond"}, "of a step"}};
+}
+
+template <class Options>
+std::string refused(Options& o, const std::string& name, const std::string& text) {
+  try {
+    field(o, name).set(text);
+  } catch (const std::invalid_argument& e) {
+    return e.what();
+  }
+  return "nothing was thrown";
+}
+
+TEST(Field, HoldsTextNumbersOfCellsAndValuesThatMayBeUnset) {
+  Wishes w;
+  std::vector<std::string> types, ranges, texts;
+  for (const auto& f : fields(w)) {
+    types.push_back(f.type());
+    ranges.push_back(f.range());
+    texts.push_back(f.text());
+  }
+  EXPECT_THAT(types, testing::ElementsAre("text", "integer", "number", "number", "integer",
+                                          "integer", "integer", "boolean", "text", "choice"));
+  EXPECT_THAT(ranges, testing::ElementsAre("", ">= 4", "(1, 9]", "", "[1, 9]", ">= 0", ">= 0",
+                                           "false | true", "", "square | diamond"));
+  EXPECT_THAT(texts, testing::ElementsAre("", "5", "2", "", "", "", "", "", "", ""));
+  check(fields(w));
+
+  apply({{"layer", "a b"},
+         {"cells", "18446744073709551615"},
+         {"factor", "9"},
+         {"nodata", "-9999"},
+         {"band", "2"},
+         {"least", "7"},
+         {"seed", "18446744073709551615"},
+         {"nodes", "false"},
+         {"tile", "N36E008"},
+         {"shape", "diamond"}},
+        fields(w));
+  EXPECT_EQ(w.layer, "a b");
+  EXPECT_EQ(w.cells, std::numeric_limits<std::size_t>::max());
+  EXPECT_EQ(w.factor, 9);
+  EXPECT_EQ(w.nodata, -9999);
+  EXPECT_EQ(w.band, 2);
+  EXPECT_EQ(w.least, 7u);
+  EXPECT_EQ(w.seed, 18446744073709551615u);
+  EXPECT_EQ(w.nodes, false);
+  EXPECT_EQ(w.tile, "N36E008");
+  EXPECT_EQ(w.shape, Shape::kDiamond);
+
+  Wishes same;
+  auto to = fields(same);
+  const auto from = fields(w);
+  for (std::size_t i = 0; i < to.size(); ++i) to[i].set(from[i].text());
+  EXPECT_EQ(same.nodata, w.nodata);
+  EXPECT_EQ(same.nodes, w.nodes);
+  EXPECT_EQ(same.shape, w.shape);
+}
+
+TEST(Field, EmptyTextUnsetsWhatMayBeUnset) {
+  Wishes w{.nodata = 1,
+           .band = 2,
+           .least = 3,
+           .seed = 4,
+           .nodes = true,
+           .tile = "a",
+           .shape = Shape::kDiamond};
+  for (const char* name : {"nodata", "band", "least", "seed", "nodes", "tile", "shape"})
+    field(w, name).set("");
+  EXPECT_FALSE(w.nodata || w.band || w.least || w.seed || w.nodes || w.tile || w.shape);
+  EXPECT_EQ(refused(w, "cells", ""), "cells = ; must be a whole number >= 4");
+}
+
+TEST(Field, RefusesTheEndOfAnOpenIntervalAndKeepsTheValue) {
+  Wishes w;
+  w.band = 3;
+  EXPECT_EQ(refused(w, "factor", "1"), "factor = 1; must be a number in (1, 9]");
+  EXPECT_EQ(refused(w, "cells", "3"), "cells = 3; must be a whole number >= 4");
+  EXPECT_EQ(refused(w, "cells", "-5"), "cells = -5; must be a whole number >= 4");
+  EXPECT_EQ(refused(w, "band", "10"), "band = 10; must be a whole number in [1, 9]");
+  EXPECT_EQ(refused(w, "nodes", "yes"), "nodes = yes; must be one of false, true");
+  EXPECT_EQ(refused(w, "shape", "round"), "shape = round; must be one of square, diamond");
+  EXPECT_EQ(w.band, 3);
+  w.band = 10;
+  EXPECT_THROW(check(fields(w)), std::invalid_argument);
+}
+
+TEST(Field, NanIsAValueOnlyWhereTheRangeSaysSo) {
+  Wishes w;
+  field(w, "nodata").set("nan");
+  EXPECT_TRUE(w.nodata && std::isnan(*w.nodata));
+  check(fields(w));
+  w.factor = std::nan("");
+  EXPECT_THROW(check(fields(w)), std::invalid_argument);
 }
 
 TEST(Check, FindsValuesSetBesideTheFields) {

@@ -8,6 +8,7 @@
 #include "numeric/random.h"
 
 namespace dem {
+using namespace numeric;
 namespace {
 
 class FillProperties : public ::testing::TestWithParam<FillMethod> {

@@ -7,6 +7,7 @@
 #include "numeric/random.h"
 
 namespace dem {
+using namespace numeric;
 namespace {
 
 /// Random holes of some share of the cells, in blobs of `blob` cells across; heights differ.

@@ -1,5 +1,5 @@
 # Tests of the house around the code: format, layers, and that others can use what is installed.
-# They do not depend on compiler or build type, so one build runs them (label `house`).
+# They do not depend on compiler or build type, so one build runs them.
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 
 add_test(NAME house.format COMMAND ${PROJECT_SOURCE_DIR}/scripts/check_format.sh)
@@ -7,6 +7,17 @@ add_test(NAME house.layers
          COMMAND Python3::Interpreter ${PROJECT_SOURCE_DIR}/scripts/check_layers.py)
 add_test(NAME house.layers_check_finds_planted_violations
          COMMAND Python3::Interpreter ${PROJECT_SOURCE_DIR}/scripts/check_layers.py --self-test)
+add_test(NAME house.lines
+         COMMAND Python3::Interpreter ${PROJECT_SOURCE_DIR}/scripts/check_lines.py)
+add_test(NAME house.lines_check_finds_planted_lines
+         COMMAND Python3::Interpreter ${PROJECT_SOURCE_DIR}/scripts/check_lines.py --self-test)
+
+# The objects stay in build/.../odr, so that a second run compiles only what has changed.
+add_test(NAME house.odr
+         COMMAND ${PROJECT_SOURCE_DIR}/scripts/check_odr.sh ${PROJECT_BINARY_DIR}/odr)
+set_tests_properties(house.odr PROPERTIES LABELS slow TIMEOUT 1800)
+add_test(NAME house.odr_check_finds_a_planted_violation
+         COMMAND ${PROJECT_SOURCE_DIR}/scripts/check_odr.sh --self-test)
 
 # The consumer's own folder is build/.../tests/consumer*, so nothing outside the build is touched.
 add_test(NAME house.consumer_without_gis
@@ -23,7 +34,9 @@ if(DEM_BUILD_IO AND DEM_BUILD_APPS AND NOT DEM_SANITIZE)
                    ${PROJECT_SOURCE_DIR}/docs/tutorial.md $<TARGET_FILE:dem_cli>)
   set(docs_tests house.docs house.tutorial)
 endif()
-set(house_tests ${docs_tests} house.format house.layers house.layers_check_finds_planted_violations
+set(fast_tests house.format house.layers house.layers_check_finds_planted_violations house.lines
+    house.lines_check_finds_planted_lines)
+set(house_tests ${docs_tests} house.odr_check_finds_a_planted_violation
     house.consumer_without_gis)
 if(DEM_BUILD_IO AND NOT DEM_SANITIZE)
   add_test(NAME house.consumer
@@ -39,4 +52,5 @@ if(DEM_BUILD_IO AND NOT DEM_SANITIZE)
     list(APPEND house_tests house.package)
   endif()
 endif()
+set_tests_properties(${fast_tests} PROPERTIES LABELS fast)
 set_tests_properties(${house_tests} PROPERTIES LABELS house TIMEOUT 600)

@@ -48,7 +48,8 @@ Method chosen(const char* name) {
 Dem filled(const Dem& holes, const Method& method) {
   libdem_dem* dem = nullptr;
   libdem_error error;
-  EXPECT_EQ(libdem_fill(holes.get(), method.get(), nullptr, &dem, &error), LIBDEM_OK) << error.text;
+  EXPECT_EQ(libdem_fill(holes.get(), method.get(), nullptr, nullptr, &dem, &error), LIBDEM_OK)
+      << error.text;
   return {dem, libdem_free};
 }
 
@@ -165,8 +166,8 @@ TEST(LibdemC, WrongArgumentsAreNamed) {
   libdem_method* method = nullptr;
   expect_refused(libdem_choose("magic", &method, &error), LIBDEM_INVALID, method, error,
                  {"magic", "mcmd"});
-  expect_refused(libdem_fill(nullptr, nullptr, nullptr, &dem, &error), LIBDEM_INVALID, dem, error,
-                 {"dem = NULL"});
+  expect_refused(libdem_fill(nullptr, nullptr, nullptr, nullptr, &dem, &error), LIBDEM_INVALID, dem,
+                 error, {"dem = NULL"});
   expect_refused(libdem_write_sigma(made(z).get(), "x.tif", 0, &error), LIBDEM_INVALID, nullptr,
                  error, {"sigma"});
 }
@@ -175,8 +176,8 @@ TEST(LibdemC, NothingKnownCannotBeFilled) {
   const Dem empty = made(std::vector<float>(kCols * kRows, NAN));
   libdem_dem* out = nullptr;
   libdem_error error;
-  expect_refused(libdem_fill(empty.get(), nullptr, nullptr, &out, &error), LIBDEM_INVALID, out,
-                 error, {"known"});
+  expect_refused(libdem_fill(empty.get(), nullptr, nullptr, nullptr, &out, &error), LIBDEM_INVALID,
+                 out, error, {"known"});
 }
 
 TEST(LibdemC, ErrorsOfFilesNameThePath) {
@@ -197,8 +198,8 @@ TEST(LibdemC, ProgressStops) {
   libdem_dem* out = nullptr;
   libdem_error error;
   const Dem holes = made(hill_with_hole());
-  expect_refused(libdem_fill(holes.get(), nullptr, &run, &out, &error), LIBDEM_CANCELLED, out,
-                 error, {"cancelled"});
+  expect_refused(libdem_fill(holes.get(), nullptr, nullptr, &run, &out, &error), LIBDEM_CANCELLED,
+                 out, error, {"cancelled"});
   EXPECT_EQ(calls, 2);
 }
 
@@ -238,6 +239,25 @@ TEST_F(LibdemCFiles, KeepTypeAndPlaceOfTheirSource) {
   EXPECT_EQ(libdem_write(out.get(), path("out.tif").c_str(), 0, &error), LIBDEM_FILE);
   EXPECT_NE(std::string(error.text).find("exists"), std::string::npos) << error.text;
   EXPECT_EQ(libdem_write(out.get(), path("out.tif").c_str(), 1, &error), LIBDEM_OK);
+}
+
+TEST(LibdemC, EvaluatesTheFilledCellsAlone) {
+  auto z = hill_with_hole();
+  const Dem holes = made(z);
+  const Dem got = filled(holes, chosen("spline"));
+  auto moved = heights(got);
+  for (std::size_t i = 0; i < z.size(); ++i) moved[i] += std::isfinite(z[i]) ? 0.0F : 3.0F;
+  const Dem truth = made(moved);
+  libdem_errors errors;
+  libdem_error error;
+  ASSERT_EQ(libdem_evaluate(truth.get(), got.get(), holes.get(), &errors, &error), LIBDEM_OK)
+      << error.text;
+  EXPECT_EQ(errors.cells,
+            std::size_t(std::ranges::count_if(z, [](float v) { return !std::isfinite(v); })));
+  EXPECT_NEAR(errors.bias_m, -3, 1e-4);
+  EXPECT_NEAR(errors.max_m, 3, 1e-3);
+  EXPECT_EQ(libdem_evaluate(truth.get(), got.get(), truth.get(), &errors, &error), LIBDEM_INVALID);
+  EXPECT_NE(std::string(error.text).find("sampled"), std::string::npos) << error.text;
 }
 
 }  // namespace

@@ -14,6 +14,8 @@
 #include "numeric/random.h"
 
 namespace dem {
+using namespace midpoint;
+using namespace numeric;
 namespace {
 
 using ::testing::FloatEq;

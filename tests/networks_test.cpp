@@ -11,6 +11,8 @@
 #include "synthesis/growth.h"
 
 namespace dem {
+using namespace numeric;
+using namespace synthesis;
 namespace {
 
 using ::testing::AllOf;

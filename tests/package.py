@@ -38,6 +38,9 @@ class Package(unittest.TestCase):
         output(dem, "fill", sparse, filled)
         output(dem, "evaluate", TILE, filled, "--known", sparse, "--expect", "rmse<20")
 
+    def test_program_draws_by_the_module_in_the_package(self):
+        output(self.root / "usr/bin/dem", "render", TILE, self.folder / "shade.png")
+
     def test_depends_on_the_libraries_that_the_program_links(self):
         depends = output("dpkg-deb", "--field", self.package, "Depends")
         for library in ("libc6", "libgdal", "libtbb", "libgeographic", "libopenimageio", "libfmt"):

@@ -132,8 +132,7 @@ TEST_F(PointFiles, SayWhatAFileWithoutPointsIs) {
   fails("# nothing\n\n", "holds no points");
   fails("x,y,z\n", "holds no points");
   fails("x,y,z\n1,2,\n", "no point has an elevation (1 rows)");
-  fails("a,b,c\n1,2,3\n",
-        "no column is called x, lon or the like; give --x-field (its columns: a, b, c)");
+  fails("a,b,c\n1,2,3\n", "no column is called x, lon or the like (its columns: a, b, c)");
   fails("lon,lat\n1,2\n", "no column is called z, elevation or the like");
   fails("1,2\n3,4\n", "2 columns; must have at least 3");
   fails(std::string("1,2,3\0\n", 7), "bytes of 0");

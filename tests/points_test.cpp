@@ -11,6 +11,7 @@
 #include "numeric/random.h"
 
 namespace dem {
+using namespace numeric;
 namespace {
 
 using testing::HasSubstr;
@@ -261,7 +262,8 @@ TEST(FillPoints, TrustsPointsByTheirSigma) {
 TEST(FillPoints, RefusesPassesBelowZero) {
   const Binned b = bin_points(one_point(1, -1, 1), unit_lattice(3, 3));
   EXPECT_THAT([&] { fill_points(b, method("mcmd"), {.passes = -1}); },
-              ThrowsMessage<std::invalid_argument>(HasSubstr("passes = -1; must be in [0, 100]")));
+              ThrowsMessage<std::invalid_argument>(
+                  HasSubstr("passes = -1; must be a whole number in [0, 100]")));
 }
 
 }  // namespace

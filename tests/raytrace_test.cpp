@@ -19,6 +19,7 @@
 #endif
 
 namespace dem {
+using namespace numeric;
 namespace {
 
 double length(Vec3 v) { return std::sqrt(dot(v, v)); }

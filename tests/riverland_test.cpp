@@ -10,6 +10,7 @@
 #include "synthesis/riverland_parts.h"
 
 namespace dem {
+using namespace synthesis;
 namespace {
 
 using ::testing::HasSubstr;

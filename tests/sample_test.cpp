@@ -12,6 +12,7 @@
 #include "numeric/random.h"
 
 namespace dem {
+using namespace numeric;
 namespace {
 
 /// Rough ground of whole metres by integer arithmetic; every ninth cell or so unknown on request.
@@ -246,7 +247,7 @@ TEST(SampleVoids, RefusesToRemoveEverything) {
   EXPECT_EQ(message_of([&] { sample_voids(whole, {.remove = 16}); }),
             "remove = 16; must be in [0, 15] for the known cells there are");
   EXPECT_EQ(message_of([&] { sample_voids(whole, {.remove = 1, .min_across = 0}); }),
-            "min_across = 0; must be >= 1");
+            "min_across = 0; must be a whole number >= 1");
   EXPECT_EQ(
       message_of([&] { sample_voids(whole, {.remove = 1, .min_across = 9, .max_across = 8}); }),
       "max_across = 8; must be >= 9");

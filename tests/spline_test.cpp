@@ -16,6 +16,8 @@
 #include "spline/tensor.h"
 
 namespace dem {
+using namespace numeric;
+using namespace spline;
 namespace {
 
 // ---- Terrains and masks

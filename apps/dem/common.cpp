@@ -111,12 +111,6 @@ void add_read_options(Command& command, ReadOptions& options) {
   command.heading("Options");
 }
 
-const std::vector<std::string>& cell_type_names() {
-  static const std::vector<std::string> names{"int8",  "uint8",  "int16",   "uint16",
-                                              "int32", "uint32", "float32", "float64"};
-  return names;
-}
-
 void add_write_options(Command& command, WriteOptions& options) {
   command.heading("Writing");
   command.option("--format", options.format, "NAME",
@@ -204,6 +198,12 @@ double parse_share(std::string_view option, const std::string& text) {
   return parse_percent(option, text) / 100;
 }
 
+std::string option_of(std::string_view field) {
+  std::string option = "--" + std::string(field);
+  std::ranges::replace(option, '_', '-');
+  return option;
+}
+
 std::string grouped(std::size_t n) {
   if (n < 1000) return fmt::format("{}", n);
   return fmt::format("{} {:03}", grouped(n / 1000), n % 1000);
@@ -232,20 +232,6 @@ void warn_of_outliers(const Dem& dem, Shell& shell) {
       "{}{}; if they mean nodata, give --nodata VALUE",
       grouped(found.count), found.low_m, found.high_m, fmt::join(names, ", "),
       found.count > names.size() ? ", ..." : "");
-}
-
-Mask removed_cells(const Dem& whole, const Dem& sampled) {
-  Mask removed = whole.known;
-  for (std::size_t i = 0; i < removed.cells().size(); ++i)
-    if (sampled.known.cells()[i]) removed.cells()[i] = 0;
-  return removed;
-}
-
-Raster<float> completed(const Dem& dem, const Raster<float>& other) {
-  Raster<float> z = dem.z;
-  for (std::size_t i = 0; i < z.cells().size(); ++i)
-    if (!dem.known.cells()[i]) z.cells()[i] = other.cells()[i];
-  return z;
 }
 
 OutputFolder::OutputFolder(const std::string& path) : path_(path) {

@@ -13,6 +13,7 @@
 
 #include "cli/command.h"
 #include "dem/dem.h"
+#include "dem/evaluation.h"
 #include "dem/io/rasters.h"
 #include "dem/run.h"
 #include "progress.h"
@@ -60,9 +61,6 @@ void add_read_options(Command& command, ReadOptions& options);
 /// Options of verbs that write a raster: --format, --type, --out-nodata, --compress, --co.
 void add_write_options(Command& command, WriteOptions& options);
 
-/// Of CellType 0, 1, ...: "int8", "uint8", ...
-const std::vector<std::string>& cell_type_names();
-
 /// --set KEY=VALUE; `of`: what has the settings.
 void add_set_option(Command& command, std::vector<std::string>& set, const std::string& of);
 
@@ -98,6 +96,10 @@ void add_crs_option(Command& command, const std::string& option, std::string& cr
 /// Throws std::invalid_argument `option = text; must be ...`.
 double parse_number(std::string_view option, const std::string& text, std::string_view must_be);
 
+/// The option of the command line that sets a field of the library: "max_area_km2" ->
+/// "--max-area-km2".
+std::string option_of(std::string_view field);
+
 /// 1050625 -> "1 050 625".
 std::string grouped(std::size_t n);
 
@@ -109,12 +111,6 @@ bool holds_metadata(const std::string& path, const std::string& format);
 
 /// Warns of known heights that cannot be meant, by name.
 void warn_of_outliers(const Dem& dem, Shell& shell);
-
-/// Cells known in `whole` and unknown in `sampled`.
-Mask removed_cells(const Dem& whole, const Dem& sampled);
-
-/// The heights of `dem`, and those of `other` where it is unknown: for slopes beside voids.
-Raster<float> completed(const Dem& dem, const Raster<float>& other);
 
 /// A folder for results. Made if it is not there; taken away again if nothing was written in it.
 class OutputFolder {

@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dem/io/geodesy.h"
+#include "evaluation_json.h"
 #include "report/evaluate_report.h"
-#include "scores.h"
 #include "verbs.h"
 
 namespace dem::app {
@@ -33,8 +32,8 @@ struct Expectation {
 Expectation parse_expectation(const std::string& text) {
   const auto at = text.find_first_of("<>");
   const auto measure = std::ranges::find_if(
-      kMeasures, [&](const Measure& m) { return text.substr(0, at) == m.name; });
-  if (at == std::string::npos || measure == std::end(kMeasures))
+      measures, [&](const Measure& m) { return text.substr(0, at) == m.name; });
+  if (at == std::string::npos || measure == std::end(measures))
     refuse("--expect", text,
            "like rmse<20, with one of rmse, mae, bias, nmad, le90, max, slope_rmse and one of <, "
            "<=, >, >=");
@@ -44,55 +43,50 @@ Expectation parse_expectation(const std::string& text) {
       parse_number("--expect", text.substr(at + 1 + or_equal), "a measure, < or >, and a number")};
 }
 
-void check_size(const std::string& path, const Dem& dem, Size size) {
-  if (dem.size() != size)
-    throw IoError(path, fmt::format("is {} x {} cells; must be {} x {}, as TRUTH", dem.z.cols(),
-                                    dem.z.rows(), size.cols, size.rows));
+/// A message of evaluate_dem, with the file that it speaks of.
+IoError with_file(const Options& o, std::string_view message) {
+  const std::string& file = message.starts_with("sampled") ? o.known
+                            : message.starts_with("sigma") ? o.sigma
+                                                           : o.got;
+  return {file, std::string(message)};
 }
 
-/// The standard deviations of a file, 0 where it has none.
-Raster<float> read_sigma(const Options& o, Size size, const Run& run) {
-  const DemFile file = read_dem(o.sigma, {}, run);
-  check_size(o.sigma, file.dem, size);
-  return completed(file.dem, Raster<float>(size));
-}
-
-/// Measures; and the sections of a report, when one is asked for.
-Scores scores_of(const Options& o, Json& sections, Stopwatch& watch, const Run& run) {
+/// Evaluates; and makes the sections of a report, when one is asked for.
+Evaluation evaluate_files(const Options& o, Json& sections, Stopwatch& watch, const Run& run) {
   const DemFile truth = read_dem(o.truth, o.read, run.part(0, 0.2));
   const DemFile got = read_dem(o.got, o.read, run.part(0.2, 0.4));
-  const Size size = truth.dem.size();
-  check_size(o.got, got.dem, size);
-  const Mask comparable = known_in_both(truth.dem, got.dem);
-  if (count(comparable) == 0) throw IoError(o.got, "no cell is known both here and in TRUTH");
-  Mask known, filled;
-  if (!o.known.empty()) {
-    DemFile sampled = read_dem(o.known, o.read, run.part(0.4, 0.5));
-    check_size(o.known, sampled.dem, size);
-    filled = without_known(comparable, sampled.dem);
-    known = std::move(sampled.dem.known);
-    if (count(filled) == 0) throw IoError(o.known, "every cell is known; no filled cell to score");
-  }
+  DemFile sampled;
+  if (!o.known.empty()) sampled = read_dem(o.known, o.read, run.part(0.4, 0.5));
   Raster<float> sigma;
-  if (!o.sigma.empty()) sigma = read_sigma(o, size, run.part(0.5, 0.6));
+  if (!o.sigma.empty()) {
+    const DemFile file = read_dem(o.sigma, {}, run.part(0.5, 0.6));
+    sigma = completed(file.dem, Raster<float>(file.dem.size()));
+  }
   watch.lap("reading");
-  Scores scores = score(truth.dem, got.dem, comparable, filled, sigma, run.part(0.6, 0.85));
-  if (scores.calibration && scores.calibration->cells == 0)
-    throw IoError(o.sigma, "no scored cell has a standard deviation above 0");
+  Evaluation evaluation;
+  try {
+    evaluation =
+        evaluate_dem(truth.dem, got.dem,
+                     {o.known.empty() ? nullptr : &sampled.dem, o.sigma.empty() ? nullptr : &sigma},
+                     run.part(0.6, 0.85));
+  } catch (const std::invalid_argument& error) {
+    throw with_file(o, error.what());
+  }
   watch.lap("comparing");
   if (!o.report.empty()) {
     const Raster<float> truth_z = completed(truth.dem, got.dem.z),
                         got_z = completed(got.dem, truth.dem.z);
-    sections = error_sections({truth_z, got_z, comparable, filled.empty() ? comparable : filled,
-                               scores.filled ? *scores.filled : scores.all, known, sigma,
-                               spacing_by_row(truth.dem.ref, size), truth.dem.spacing},
-                              scores.truth, scores.got, run.part(0.85, 1));
+    const std::vector<Spacing> spacing = spacing_of_rows(truth.dem);
+    sections = error_sections(
+        {truth_z, got_z, evaluation.comparable, evaluation.judged, evaluation.judged_errors(),
+         std::move(sampled.dem.known), std::move(sigma), spacing, truth.dem.spacing},
+        evaluation.truth, evaluation.got, run.part(0.85, 1));
     watch.lap("drawing");
   }
-  return scores;
+  return evaluation;
 }
 
-std::string error_table(const Scores& s) {
+std::string error_table(const Evaluation& s) {
   std::string text =
       fmt::format("{:<12}{:>14}{}\n", "", "all cells", s.filled ? "  filled cells" : "");
   const auto row = [&](std::string_view name, const std::string& all, const std::string& filled,
@@ -101,7 +95,7 @@ std::string error_table(const Scores& s) {
                         s.filled ? fmt::format("{:>14}", filled) : "", unit);
   };
   row("cells", grouped(s.all.cells), s.filled ? grouped(s.filled->cells) : "", "");
-  for (const auto& m : kMeasures)
+  for (const auto& m : measures)
     row(m.name, fmt::format("{:.3f}", s.all.*m.value),
         s.filled ? fmt::format("{:.3f}", (*s.filled).*m.value) : "", m.unit);
   if (s.unfilled)
@@ -109,7 +103,7 @@ std::string error_table(const Scores& s) {
   return text;
 }
 
-std::string calibration_text(const Scores& s) {
+std::string calibration_text(const Evaluation& s) {
   if (!s.calibration) return "";
   const Calibration& c = *s.calibration;
   return fmt::format(
@@ -119,7 +113,7 @@ std::string calibration_text(const Scores& s) {
       100 * c.within_1, 100 * c.within_2, 100 * c.within_3, grouped(c.cells), c.rms_ratio);
 }
 
-std::string spectrum_table(const Scores& s) {
+std::string spectrum_table(const Evaluation& s) {
   if (s.truth.empty()) return "";
   std::string text = "\nspectrum\nwavelength m    truth m^4      got m^4    got/truth\n";
   for (std::size_t i = 0; i < s.truth.size(); ++i)
@@ -129,9 +123,9 @@ std::string spectrum_table(const Scores& s) {
   return text;
 }
 
-void write_page(const Options& o, const Scores& s, Json sections, const Stopwatch& watch,
+void write_page(const Options& o, const Evaluation& s, Json sections, const Stopwatch& watch,
                 Shell& shell) {
-  const Errors& judged = s.filled ? *s.filled : s.all;
+  const Errors& judged = s.judged_errors();
   const char* cells = s.filled ? "filled" : "compared";
   ReportPage page;
   page.title = fmt::format("{} against {}", name_of(o.got), name_of(o.truth));
@@ -140,7 +134,7 @@ void write_page(const Options& o, const Scores& s, Json sections, const Stopwatc
   if (s.unfilled)
     page.lead += fmt::format(" {} cells of TRUTH are unknown in GOT.", grouped(s.unfilled));
   Json rows = Json::array();
-  for (const auto& m : kMeasures) {
+  for (const auto& m : measures) {
     if (std::isfinite(judged.*m.value))
       page.figures.emplace_back(m.title, fmt::format("{:.2f} {}", judged.*m.value, m.unit));
     Json row{fmt::format("{}, {}", m.title, m.unit), decimal(s.all.*m.value, 3)};
@@ -166,9 +160,9 @@ int evaluate(const Options& o, Shell& shell) {
   const Run run = shell.run();
   Stopwatch watch;
   Json sections;
-  const Scores s = scores_of(o, sections, watch, run);
+  const Evaluation s = evaluate_files(o, sections, watch, run);
   if (!o.report.empty()) write_page(o, s, std::move(sections), watch, shell);
-  const Errors& judged = s.filled ? *s.filled : s.all;
+  const Errors& judged = s.judged_errors();
 
   Json json = as_json(s);
   json["expect"] = Json::array();

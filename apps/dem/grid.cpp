@@ -4,7 +4,6 @@
 #include <chrono>
 #include <optional>
 
-#include "dem/contours.h"
 #include "dem/gridding.h"
 #include "dem/io/lattices.h"
 #include "dem/io/methods.h"
@@ -14,11 +13,6 @@
 
 namespace dem::app {
 namespace {
-
-const std::vector<std::pair<std::string, Combine>> kCombine{{"mean", Combine::mean},
-                                                            {"min", Combine::min},
-                                                            {"max", Combine::max},
-                                                            {"median", Combine::median}};
 
 struct Options {
   std::string points, out, sigma, breaklines;
@@ -46,10 +40,8 @@ ChosenMethod choose(const Options& o) {
   for (const auto& text : o.set) chosen.settings.push_back(parse_setting(text));
   if (!o.sigma.empty()) chosen.settings.emplace_back("sigma", "law");
   if (!o.breaklines.empty() && !o.no_fill) check_honours_breaklines(*chosen.method);
-  // One known cell is cheap to fill: bad settings show before long work.
-  const Filled trial =
-      chosen.method->fill({Raster<float>({1, 1}), Mask({1, 1}, 1), {}, {}}, chosen.settings, {});
-  if (!o.sigma.empty() && trial.sigma.empty())
+  chosen.check();
+  if (!o.sigma.empty() && !chosen.gives_sigma())
     throw std::invalid_argument("sigma: method " + o.method + " gives no standard deviation");
   return chosen;
 }
@@ -142,7 +134,8 @@ double spacing_along_lines(const Options& o, const Lattice& lattice, const Exten
   return spacing;
 }
 
-/// Contour lines on a lattice: each cell that a line passes has its level, and a height at its centre.
+/// Contour lines on a lattice: each cell that a line passes has its level, and a height at its
+/// centre.
 Read read_contours(const Options& o, const Run& run) {
   Read read;
   PointReadOptions options = o.read;
@@ -235,7 +228,7 @@ std::size_t count_absurd(const Dem& dem) {
   return n;
 }
 
-void say_what_was_read(const Options& o, const Read& read, Shell& shell) {
+void say_what_was_read(Options& o, const Read& read, Shell& shell) {
   const BinCounts& n = read.binned.counts;
   const Dem& dem = read.binned.dem;
   for (const auto& note : read.source.notes) shell.say("{}", note);
@@ -255,10 +248,8 @@ void say_what_was_read(const Options& o, const Read& read, Shell& shell) {
         "warning: {} with elevations beyond {:g} m; --reject-outliers or --nodata leaves such out",
         plural(absurd, "cell"), kAbsurd_m);
   if (n.duplicates > 0)
-    shell.say(
-        "{} at the place of another with another elevation: combined by {}",
-        plural(n.duplicates, "point"),
-        std::ranges::find(kCombine, o.bin.combine, &decltype(kCombine)::value_type::second)->first);
+    shell.say("{} at the place of another with another elevation: combined by {}",
+              plural(n.duplicates, "point"), field(o.bin, "combine").text());
   if (n.outliers > 0) shell.say("{} taken for outliers and left out", plural(n.outliers, "cell"));
   shell.say("{} in {} of {} cells ({})", plural(n.points - n.outside, "point"), grouped(n.cells),
             grouped(dem.size().cells()), percent_of(n.cells, dem.size().cells()));
@@ -333,17 +324,15 @@ std::size_t say_what_is_closed_off(const Dem& dem, Shell& shell) {
 
 /// Contour lines by their own method have their levels as bounds; all else goes through its points.
 Gridded fill(const Options& o, const Read& read, const ChosenMethod& method, const Run& run) {
-  if (!o.contours || method.method->name != "contours")
+  if (!o.contours || !method.method->fill_lines)
     return fill_points(read.binned, method, o.gridding, run);
-  ContourOptions options;
-  apply(method.settings, fields(options));
-  return {fill_contours(read.lines, read.binned.dem.z, options, run), {}};
+  return {method.method->fill_lines(read.lines, read.binned.dem.z, method.settings, run), {}};
 }
 
 int grid(Options& o, Shell& shell) {
   check_options(o);
   o.bin.plane = !o.snap;
-  if (o.method.empty()) o.method = o.contours ? "contours" : std::string(default_fill_method());
+  if (o.method.empty()) o.method = o.contours ? default_contour_method() : default_fill_method();
   const ChosenMethod method = choose(o);
   WriteOptions write = o.write;
   write.overwrite = shell.overwrite;
@@ -366,7 +355,7 @@ int grid(Options& o, Shell& shell) {
     Gridded gridded = fill(o, read, method, run.part(0.4, 0.9));
     const double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    if (method.method->traits.for_contours && !on_contour_lines(gridded.filled.report))
+    if (method.method->traits.for_contours && !gridded.filled.contour_lines)
       shell.say("{}: the cells with points are no contour lines; the spline filled the rest",
                 o.method);
     dem.z = std::move(gridded.filled.z);
@@ -452,13 +441,9 @@ void add_grid(Program& program, Shell& shell) {
               "Lines and polygons across which the surface may jump, such as cliffs and dams")
       .kind("vector");
   verb.option_read_by(
-          "--combine",
-          [o](const std::string& name) {
-            for (const auto& [text, how] : kCombine)
-              if (text == name) o->bin.combine = how;
-          },
-          "HOW", "How the points of one cell become one height")
-      .one_of({"mean", "min", "max", "median"})
+          "--combine", [o](const std::string& name) { field(o->bin, "combine").set(name); }, "HOW",
+          "How the points of one cell become one height")
+      .one_of(field(o->bin, "combine").choices())
       .show_default("mean");
   verb.option("--reject-outliers", o->bin.outliers, "TIMES",
               "Drop cells more than TIMES robust standard deviations from their neighbours, for "

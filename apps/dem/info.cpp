@@ -112,9 +112,9 @@ std::string as_text(const Facts& f) {
     line("voids", fmt::format("{}, largest {} cells; {} touch the border ({} cells)",
                               grouped(f.voids.voids), grouped(f.voids.largest),
                               grouped(f.voids.border_voids), grouped(f.voids.border_cells)));
-  if (source.evidence.empty()) line("no-data signs", "none found");
+  if (source.evidence.empty()) line("nodata signs", "none found");
   for (const auto& e : source.evidence)
-    line(&e == &source.evidence.front() ? "no-data signs" : "",
+    line(&e == &source.evidence.front() ? "nodata signs" : "",
          fmt::format("{:<24} {:>12} cells  {}: {}", e.what, grouped(e.cells),
                      e.used ? "unknown" : "kept", e.why));
   return text;

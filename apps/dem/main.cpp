@@ -87,6 +87,11 @@ int run_verb(Command& verb, const std::vector<std::string>& words, Shell& shell)
   } catch (const std::invalid_argument& error) {
     shell.clear_bar();
     return fail(kUsage, error.what());
+  } catch (const IoError& error) {
+    shell.clear_bar();
+    const std::string& field = error.field();
+    return fail(kFile, field.empty() ? error.what()
+                                     : fmt::format("{} ({})", error.what(), option_of(field)));
   } catch (const std::bad_alloc&) {
     shell.clear_bar();
     return fail(kFile, "not enough memory for a raster of this size");

@@ -2,11 +2,18 @@
 
 #include "dem/methods.h"
 
+#include "dem/deterrace.h"
 #include "dem/draw.h"
 #include "dem/erosion.h"
 #include "dem/generators.h"
+#include "dem/greedy.h"
+#include "dem/gridding.h"
 #include "dem/io/methods.h"
+#include "dem/io/point_files.h"
+#include "dem/io/rasters.h"
 #include "dem/raytrace.h"
+#include "dem/sample.h"
+#include "dem/supersample.h"
 #include "verbs.h"
 
 namespace dem::app {
@@ -42,6 +49,8 @@ Json as_json(const FillMethod& m) {
           {"default", m.name == default_fill_method()},
           {"for_contours", m.traits.for_contours},
           {"honours_breaklines", m.traits.honours_breaklines},
+          {"bytes_per_cell", m.traits.bytes_per_cell.value},
+          {"takes_point_sigma", bool(m.fill_noisy)},
           {"fields", as_json(m.fields)},
           {"presets", as_json(m.presets)}};
 }
@@ -87,6 +96,26 @@ template <class Options>
 Json fields_of() {
   Options defaults;
   return as_json(describe(fields(defaults)));
+}
+
+/// The fields of several options structs, one after the other.
+template <class... Options>
+Json fields_of_all() {
+  Json all = Json::array();
+  const auto append = [&](const Json& some) { all.insert(all.end(), some.begin(), some.end()); };
+  (append(fields_of<Options>()), ...);
+  return all;
+}
+
+/// The options of the library that stand behind those of verbs.
+Json option_tables() {
+  return {{"grid", fields_of_all<BinOptions, GriddingOptions>()},
+          {"points", fields_of<PointReadOptions>()},
+          {"supersample", fields_of<SupersampleOptions>()},
+          {"sample", {{"greedy", fields_of<GreedyOptions>()}, {"voids", fields_of<VoidOptions>()}}},
+          {"deterrace", fields_of<DeterraceOptions>()},
+          {"read", fields_of<ReadOptions>()},
+          {"write", fields_of<WriteOptions>()}};
 }
 
 /// A row of either table.
@@ -149,6 +178,7 @@ int methods(const std::string& wanted, const Program& program, Shell& shell) {
     tables["styles"] = {{"hillshade", fields_of<HillshadeOptions>()},
                         {"relief", fields_of<ReliefOptions>()},
                         {"view", fields_of<ViewOptions>()}};
+    tables["options"] = option_tables();
     tables["verbs"] = as_json(program);
   }
   shell.print(tables, text);

@@ -13,7 +13,8 @@ namespace dem::app {
 Canvas globe_canvas(Size size);
 
 /// Cells of so many metres, the north-west one centred at (x, y) in the CRS's units. In degrees (or
-/// feet), the cell is what spans so many metres there. `crs`: "EPSG:32619", WKT, PROJ's words or "".
+/// feet), the cell is what spans so many metres there. `crs`: "EPSG:32619", WKT, PROJ's words or
+/// "".
 Canvas plane_canvas(Size size, Spacing spacing, double x, double y, const std::string& crs);
 
 /// Throws std::invalid_argument unless the text has the form that place_in takes.

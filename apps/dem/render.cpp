@@ -124,7 +124,8 @@ int render(const Options& o, Shell& shell) {
   return kDone;
 }
 
-/// An option for each field: --name VALUE; a switch that is off is --name, one that is on --no-name.
+/// An option for each field: --name VALUE; a switch that is off is --name, one that is on
+/// --no-name.
 void add_field_options(Command& verb, const std::shared_ptr<Options>& o) {
   ReliefOptions relief;
   ViewOptions view;

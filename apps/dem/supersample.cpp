@@ -23,18 +23,18 @@ ChosenMethod choose(const Options& o) {
   ChosenMethod chosen = find_method(all_fill_methods(), o.method);
   for (const auto& text : o.set) chosen.settings.push_back(parse_setting(text));
   if (o.roughness) {
-    if (chosen.method->name != "spline")
+    if (!chosen.method->has_setting("realisation"))
       throw std::invalid_argument("--roughness is the spline's; method " + o.method + " has none");
     chosen.settings.emplace_back("realisation", "1");
     chosen.settings.emplace_back("seed", std::to_string(o.seed));
   }
-  // One known cell is cheap to fill: bad settings show before long work.
-  chosen.method->fill({Raster<float>({1, 1}), Mask({1, 1}, 1), {}, {}}, chosen.settings, {});
+  chosen.check();
   return chosen;
 }
 
 int run_supersample(const Options& o, Shell& shell) {
   const ChosenMethod method = choose(o);
+  check_options(o.super);
   WriteOptions write = o.write;
   write.overwrite = shell.overwrite;
   check_writable(o.out, write);
@@ -66,7 +66,7 @@ int run_supersample(const Options& o, Shell& shell) {
                {"cols", lattice.size.cols},
                {"rows", lattice.size.rows},
                {"cell_m", {lattice.spacing.dx_m, lattice.spacing.dy_m}},
-               {"preserve", means ? "block-mean" : "heights"},
+               {"preserve", field(options, "preserve").text()},
                {"miss_rms_m", fine.miss_rms_m},
                {"miss_max_m", fine.miss_max_m}},
               "");
@@ -89,14 +89,11 @@ void add_supersample(Program& program, Shell& shell) {
       .above(1)
       .must_be_given();
   verb.option_read_by(
-          "--preserve",
-          [o](const std::string& what) {
-            o->super.preserve = what == "heights" ? Preserve::heights : Preserve::means;
-          },
+          "--preserve", [o](const std::string& what) { field(o->super, "preserve").set(what); },
           "WHAT",
           "What the finer DEM keeps: the heights at the coarse centres, or the mean of each coarse "
           "cell")
-      .one_of({"heights", "block-mean"})
+      .one_of(field(o->super, "preserve").choices())
       .show_default("heights");
   verb.flag("--roughness", o->roughness,
             "Add random relief below the old cell size, as rough as the terrain");

@@ -2,12 +2,6 @@
 include(CMakeFindDependencyMacro)
 find_dependency(GDAL CONFIG)
 
-# Debian's OpenImageIO package for CMake wants OpenCV and tools that linking does not need.
-find_dependency(PkgConfig)
-if(NOT TARGET PkgConfig::OpenImageIO)
-  pkg_check_modules(OpenImageIO REQUIRED IMPORTED_TARGET OpenImageIO)
-endif()
-
 # Debian ships GeographicLib without a CMake package.
 if(NOT TARGET dem::GeographicLib)
   find_path(GEOGRAPHICLIB_INCLUDE_DIR GeographicLib/Geodesic.hpp REQUIRED)

@@ -8,7 +8,8 @@
 //   rmse_m          over the removed cells, so that speed cannot be bought with error
 //
 // 1025 is Mount Washington when DEM_TESTDATA says where its tile is, else a fractal; 4097 and 16385
-// are fractals. Example: build/release/tests/bench/fill_bench --benchmark_filter='fill/mcmd/1025/.*'
+// are fractals. Example:
+//   build/release/tests/bench/fill_bench --benchmark_filter='fill/mcmd/1025/.*'
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>

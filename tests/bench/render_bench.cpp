@@ -2,7 +2,7 @@
 //
 //   render/rays/SIZE           primary rays of the three-quarter view
 //   render/near/SIZE           primary rays of a camera over the southern rim that looks north
-//   render/rays_embree/SIZE    the same rays through Embree, single rays, when it was there to build
+//   render/rays_embree/SIZE    the same rays through Embree, single rays, if it was found by CMake
 //   render/near_embree/SIZE
 //   render/tree/SIZE           making the surface and its tree
 //   render/view/SIZE           a whole picture of 640 x 360, 4 rays for a pixel, with shadows

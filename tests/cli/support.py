@@ -123,5 +123,30 @@ class CliTest(unittest.TestCase):
         self.assertEqual(sorted(os.listdir(self.dir)), sorted(names))
 
 
+def slow(test):
+    """Marks a test, or all tests of a class, that takes seconds: ctest gives it the label `slow`."""
+    test.slow = True
+    return test
+
+
+class Chosen(unittest.TestLoader):
+    """Loads the slow tests, or those that are not."""
+
+    def __init__(self, want_slow):
+        super().__init__()
+        self.want_slow = want_slow
+
+    def getTestCaseNames(self, case):
+        def is_slow(name):
+            return getattr(case, "slow", False) or getattr(getattr(case, name), "slow", False)
+
+        return [name for name in super().getTestCaseNames(case) if is_slow(name) == self.want_slow]
+
+
 def main():
-    unittest.main(argv=sys.argv[:1], verbosity=1)
+    """Runs the tests of a file: all, or those that its only argument names, `fast` or `slow`."""
+    which = sys.argv[1:]
+    if which not in ([], ["fast"], ["slow"]):
+        sys.exit(f"usage: {sys.argv[0]} [fast|slow]")
+    loader = Chosen(which == ["slow"]) if which else unittest.defaultTestLoader
+    unittest.main(argv=sys.argv[:1], verbosity=1, testLoader=loader)

@@ -301,7 +301,7 @@ class Reproduce(CliTest):
 class Methods(CliTest):
     def test_json_is_an_object_of_fill_methods_and_generators(self):
         table = json.loads(self.succeeds("methods", "--json").stdout)
-        self.assertEqual(sorted(table), ["erosion", "fill", "generators", "styles", "verbs"])
+        self.assertEqual(sorted(table), ["erosion", "fill", "generators", "options", "styles", "verbs"])
         for method in table["fill"]:
             for key in ("name", "summary", "citation", "fields"):
                 self.assertIn(key, method)

@@ -68,7 +68,8 @@ class Finer(CliTest):
 
     def test_bad_values_are_one_line(self):
         self.raster()
-        self.fails(1, "supersample", "in.asc", "out.asc", "--factor", "1", says=["factor = 1; must be a number above 1"])
+        self.fails(1, "supersample", "in.asc", "out.asc", "--factor", "1",
+                   says=["factor = 1; must be a number above 1"])
         self.fails(1, "supersample", "in.asc", "out.asc", says=["--factor"])
         self.fails(1, "supersample", "in.asc", "out.asc", "-f", "2", "-m", "mcmd", "--roughness", says=["--roughness"])
         self.fails(1, "deterrace", "in.asc", "out.asc", "--bound=-1", says=["bound = -1"])

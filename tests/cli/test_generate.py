@@ -3,7 +3,7 @@
 
 import json
 
-from support import CliTest, main
+from support import CliTest, main, slow
 
 
 class Generate(CliTest):
@@ -13,13 +13,15 @@ class Generate(CliTest):
     def table(self):
         return json.loads(self.succeeds("methods", "--json").stdout)["generators"]
 
+    @slow
     def test_every_generator_and_preset_makes_a_dem_without_holes(self):
         for row in self.table():
             if row["image"]:
                 continue
             for name in [row["name"]] + [f"{row['name']}:{p['name']}" for p in row["presets"]]:
                 with self.subTest(name):
-                    self.succeeds("generate", name, "x.tif", "--size", "40x20", *([] if row["globe"] else ["--cell", "300"]), "--overwrite")
+                    cell = [] if row["globe"] else ["--cell", "300"]
+                    self.succeeds("generate", name, "x.tif", "--size", "40x20", *cell, "--overwrite")
                     facts = self.facts("x.tif")
                     self.assertEqual((facts["cols"], facts["rows"], facts["unknown_cells"]), (40, 20, 0))
                     self.assertLess(facts["low_m"], facts["high_m"])

@@ -111,7 +111,8 @@ class Contours(CliTest):
         flat = {"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {"name": "a"}, "geometry": {
             "type": "LineString", "coordinates": [[8, 46], [9, 47]]}}]}
         self.write("n.geojson", json.dumps(flat))
-        self.fails(2, "grid", "n.geojson", "g.tif", "--contours", "--cell", "1s", says=["has no elevations", "--z-field"])
+        self.fails(2, "grid", "n.geojson", "g.tif", "--contours", "--cell", "1s",
+                   says=["has no elevations", "--z-field"])
 
 
 class Breaklines(CliTest):
@@ -128,7 +129,8 @@ class Breaklines(CliTest):
             "type": kind, "coordinates": coordinates}}))
 
     def grid(self, *arguments):
-        done = self.succeeds("grid", "p.csv", "g.asc", "--bounds", "0,0,400,300", "--cell", "10m", "--overwrite", *arguments)
+        done = self.succeeds("grid", "p.csv", "g.asc", "--bounds", "0,0,400,300", "--cell", "10m", "--overwrite",
+                             *arguments)
         rows = [line.split() for line in self.read("g.asc").decode().splitlines() if line[0] not in "ncxydN"]
         return done, [[float(z) for z in row] for row in rows]
 
@@ -162,7 +164,7 @@ class BadInput(CliTest):
             "": ["is empty"],
             "x,y,z\n": ["holds no points"],
             "x,y,z\n1,2,x3\n": ["line 2", "z = x3"],
-            "x,y,z\n1,2,3\n": ["1 point covers no area", "--bounds"],
+            "x,y,z\n1,2,3\n": ["1 point covers no area", "bounds and cell"],
             "x,y,z\n1,2,3\n4,2,3\n": ["2 points cover no area"],
             "lon,lat,z\n46,121,3\n": ["wrong way round"],
             "a,b,c\n1,2,3\n": ["--x-field", "a, b, c"],

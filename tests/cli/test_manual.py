@@ -8,7 +8,7 @@ import shutil
 import subprocess
 import unittest
 
-from support import DEM, CliTest, main
+from support import DEM, CliTest, main, slow
 
 
 def needs(program):
@@ -69,6 +69,7 @@ class Verbs(CliTest):
             self.assertIn(f"# dem {name}\n", output("manual", name, "--format", "markdown"))
         self.assertIn("dem\\-fill (1)", output("manual"))
 
+    @slow
     @needs("man")
     def test_man_reads_the_pages_without_complaint(self):
         pages = [self.write(f"{name or 'dem'}.1", output("manual", *filter(None, [name])))
@@ -84,6 +85,7 @@ class Verbs(CliTest):
         self.fails(1, "manual", "fill", "--format", "pdf", says=["pdf", "markdown"])
 
 
+@slow
 class Completion(CliTest):
     """What a shell offers at the end of a line."""
 
@@ -97,9 +99,10 @@ class Completion(CliTest):
 
     def fish(self, line):
         script = self.write("dem.fish", output("completion", "fish"))
+        path = f"{os.path.dirname(DEM)}:{os.environ['PATH']}"
         done = subprocess.run(["fish", "--no-config", "-c", f"source {script}; complete -C '{line}'"], cwd=self.dir,
                               capture_output=True, text=True, timeout=60,
-                              env={**os.environ, "HOME": self.dir, "PATH": f"{os.path.dirname(DEM)}:{os.environ['PATH']}"})
+                              env={**os.environ, "HOME": self.dir, "PATH": path})
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         return [entry.split("\t")[0] for entry in done.stdout.splitlines()]
 

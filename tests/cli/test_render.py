@@ -3,7 +3,7 @@
 import json
 import struct
 
-from support import CliTest, asc_text, main
+from support import CliTest, asc_text, main, slow
 
 
 def png_shape(data):
@@ -28,6 +28,7 @@ class Render(CliTest):
         self.assertEqual((facts["style"], facts["width"], facts["height"]), ("view", 64, 48))
         self.assertGreaterEqual(facts["exaggeration"], 1)
 
+    @slow
     def test_options_change_the_picture_and_threads_do_not(self):
         self.hgt()
         pictures = {}
@@ -84,7 +85,8 @@ class Render(CliTest):
         for point in ("1,2", "a,b,c", "1,2,3,4"):
             self.fails(1, "render", "N10E010.hgt", "v.png", "--style", "view", "--camera", point,
                        says=["camera = ", "must be X,Y,Z"])
-        self.fails(1, "render", "N10E010.hgt", "v.png", "--style", "view", "--target", "10.5,10.5,9", says=["target without"])
+        self.fails(1, "render", "N10E010.hgt", "v.png", "--style", "view", "--target", "10.5,10.5,9",
+                   says=["target without"])
 
     def test_files_that_cannot_be_read_or_written_are_told(self):
         self.hgt()

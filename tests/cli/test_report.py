@@ -6,7 +6,7 @@ import re
 import unittest
 
 import browser
-from support import CliTest, asc_text, height, hgt_bytes, limit_file_size, main
+from support import CliTest, asc_text, height, hgt_bytes, limit_file_size, main, slow
 
 SIDE = 65
 TRUTH = "N10E010.whole.hgt"
@@ -118,7 +118,7 @@ class Refusals(ReportTest):
                  ("curve", TRUTH, "curves"))
         for verb in verbs:
             for path, code, says in (("folder", 2, "folder: is a folder"), ("none/a.html", 2, "none does not exist"),
-                                     ("there.html", 2, "exists; give --overwrite"),
+                                     ("there.html", 2, "overwriting it was not asked for (--overwrite)"),
                                      ("a.tif", 1, "report = a.tif; must be a file name in .html")):
                 self.fails(code, *verb, "--report", path, says=[says])
         self.assert_files("N10E010.hgt", TRUTH, "folder", "there.html")
@@ -139,9 +139,10 @@ class Refusals(ReportTest):
         self.write("zero.asc", asc_text([[0] * SIDE] * SIDE))
         self.write("small.asc", asc_text([[1, 2]]))
         self.fails(2, "evaluate", TRUTH, TRUTH, "--sigma", "small.asc", says=["is 2 x 1 cells"])
-        self.fails(2, "evaluate", TRUTH, TRUTH, "--sigma", "zero.asc", says=["standard deviation above 0"])
+        self.fails(2, "evaluate", TRUTH, TRUTH, "--sigma", "zero.asc", says=["zero.asc", "sigma is above 0 in no cell"])
 
 
+@slow
 @unittest.skipUnless(browser.executable(), "no browser: install the package chromium")
 class InABrowser(ReportTest):
     def setUp(self):

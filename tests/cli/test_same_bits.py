@@ -10,7 +10,7 @@ import subprocess
 import sys
 import unittest
 
-from support import DEM, CliTest, hgt_bytes
+from support import DEM, CliTest, hgt_bytes, main
 
 TILE = str(pathlib.Path(__file__).parents[2] / "testdata" / "jacksboro.tif")
 
@@ -46,7 +46,8 @@ def inputs(folder):
     """The files that the commands of CASES begin with."""
     files = {name: os.path.join(folder, name + ".tif") for name in ("holes", "sparse", "lines")}
     files["tile"] = TILE
-    for name, words in {"holes": ("--voids", "5%"), "sparse": ("--keep", "3.4%"), "lines": ("--contours", "20")}.items():
+    samples = {"holes": ("--voids", "5%"), "sparse": ("--keep", "3.4%"), "lines": ("--contours", "20")}
+    for name, words in samples.items():
         done = dem("sample", TILE, files[name], *words, "--seed", "1")
         assert done.returncode == 0, done.stderr
     files["points"] = os.path.join(folder, "points.csv")
@@ -91,4 +92,4 @@ if __name__ == "__main__":
             for case, _ in CASES:
                 print(f'    ("{case}", "{checksum(case, made, ready)}"),')
     else:
-        unittest.main()
+        main()

@@ -38,8 +38,8 @@ def test_known_cells_come_back_and_no_hole_is_left(case, method):
     filled = libdem.fill(z, known, method=method)
     assert np.array_equal(z, before)
     assert filled.elevation.shape == z.shape
-    assert filled.elevation.dtype == (np.float64 if z.dtype.itemsize > 2 and z.dtype.kind != "f" or z.dtype == np.float64
-                                      else np.float32)
+    wide = z.dtype.itemsize > 2 and z.dtype.kind != "f" or z.dtype == np.float64
+    assert filled.elevation.dtype == (np.float64 if wide else np.float32)
     assert np.array_equal(filled.elevation[known], z[known])
     assert np.isfinite(filled.elevation).all()
     assert np.array_equal(filled.source == libdem.CellOrigin.measured, known)
@@ -150,12 +150,12 @@ def test_other_calls_tell_what_is_wrong(hills, tmp_path):
             (lambda: libdem.sample(hills, keep=2), r"keep = 2; must be in \(0, 1\]"),
             (lambda: libdem.sample(hills, every=1.5), "every = 1.5; must be a whole number above 0"),
             (lambda: libdem.evaluate(hills, hills[1:]), r"got has shape \(39, 50\); must be \(40, 50\), as truth"),
-            (lambda: libdem.evaluate(hills, hills, hills), "every cell is known in sampled"),
+            (lambda: libdem.evaluate(hills, hills, hills), "sampled knows every cell"),
             (lambda: libdem.grid([1, 2], [1], [1, 2]), "y has 1 values; must have 2, as z"),
             (lambda: libdem.grid([np.nan], [1], [1]), "no point has a finite x, y and z"),
             (lambda: libdem.grid([1], [1], [1], bounds=(0, 0, 9, 9)), "bounds needs cell"),
             (lambda: libdem.grid([1], [1], [1], bounds=(0, 0, 9), cell=1), "must be west, south, east, north"),
-            (lambda: libdem.supersample(hills, 1), "factor = 1; must be above 1"),
+            (lambda: libdem.supersample(hills, 1), "factor = 1; must be a number in"),
             (lambda: libdem.generate("nois"), 'unknown generator "nois"'),
             (lambda: libdem.generate("noise", 0), "rows = 0; must be a whole number from 1 up"),
             (lambda: libdem.generate("sketch"), "sketch needs an image"),

@@ -22,8 +22,8 @@ SIDE = 301  # of a tile; neighbours share a row or column
 
 @pytest.fixture(scope="module")
 def client():
-    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None) as cluster, \
-            distributed.Client(cluster) as client:
+    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=True,
+                                  dashboard_address=None) as cluster, distributed.Client(cluster) as client:
         yield client
 
 
@@ -59,7 +59,8 @@ def world(tmp_path_factory):
     libdem.write(folder / "whole.tif", whole)
     subprocess.run([os.environ["DEM_BINARY"], "fill", "whole.tif", "filled.tif", "-q", "--where", "cells < 50000"],
                    cwd=folder, check=True)
-    return cut(dem, folder / "tiles", skip=[(1, 1)]), libdem.read(folder / "filled.tif"), libdem.read(folder / "whole.tif")
+    files = cut(dem, folder / "tiles", skip=[(1, 1)])
+    return files, libdem.read(folder / "filled.tif"), libdem.read(folder / "whole.tif")
 
 
 def write_vrt(files, path):
@@ -143,7 +144,8 @@ def journals(folder):
 def test_a_worker_that_dies_in_the_middle_changes_no_bit(world, client, tmp_path):
     files, filled, _ = world
     pids = sorted(client.run(os.getpid).values())
-    thread, result = in_thread(lambda: fill_mosaic(files, tmp_path / "out", client, **options(world, bundle_cells=5000)))
+    settings = options(world, bundle_cells=5000)
+    thread, result = in_thread(lambda: fill_mosaic(files, tmp_path / "out", client, **settings))
     wait_for(lambda: len(journals(tmp_path / "out")) >= 3 or result)
     assert not result, "the run was over before a worker could be killed"
     os.kill(pids[0], signal.SIGKILL)
@@ -165,7 +167,8 @@ def test_the_same_call_goes_on_after_a_stop(world, client, tmp_path):
         with pytest.raises(KeyboardInterrupt):
             fill_mosaic(files, tmp_path / "out", client, progress=stop_at(where), **options(world))
     seen = []
-    report = fill_mosaic(files, tmp_path / "out", client, progress=lambda part, what: seen.append(what), **options(world))
+    report = fill_mosaic(files, tmp_path / "out", client, progress=lambda part, what: seen.append(what),
+                         **options(world))
     assert "looking for holes" not in seen and report["resumed"] == report["windows"]
     assert_same(tmp_path / "out", filled)
 

@@ -17,7 +17,9 @@ def test_pip_installs_what_can_be_imported(tmp_path):
     done = subprocess.run(command, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     code = ("import libdem, libdem.distributed, numpy as np; z = np.zeros((9, 9)); z[3, 3] = np.nan;"
+            "libdem.fill(z, method='pushpull');"  # by the module that is installed beside the package's own
             "print(libdem.__version__, libdem.fill(z).elevation[3, 3], libdem.__file__)")
+    assert (tmp_path / "site" / "libdem" / "libdem-images.so").exists()
     env = {**os.environ, "PYTHONPATH": str(tmp_path / "site")}
     version, filled, file = subprocess.run([sys.executable, "-c", code], env=env, cwd=tmp_path, capture_output=True,
                                            text=True, check=True).stdout.split()

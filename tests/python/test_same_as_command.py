@@ -19,7 +19,8 @@ def holed_file(holed, tmp_path):
     ({}, []),
     ({"threads": 1}, []),
     ({"method": "mcmd:paper"}, ["--method", "mcmd:paper"]),
-    ({"method": "mcmd", "I": 0.3, "rs": 0.5, "seed": 7}, ["--method", "mcmd", "-s", "I=0.3", "-s", "rs=0.5", "--seed", "7"]),
+    ({"method": "mcmd", "I": 0.3, "rs": 0.5, "seed": 7},
+     ["--method", "mcmd", "-s", "I=0.3", "-s", "rs=0.5", "--seed", "7"]),
     ({"inner_only": True}, ["--inner-only"]),
     ({"where": "cells < 100"}, ["--where", "cells < 100"]),
     ({"whole": True, "adaptive": False}, ["--whole", "-s", "adaptive=false"]),
@@ -127,7 +128,8 @@ def test_erode(testdata, dem, tmp_path):
 
 
 @pytest.mark.parametrize("style, keywords, options", [
-    ("hillshade", {"multidirectional": True}, ["--multidirectional"]), ("relief", {"palette": "dusk"}, ["--palette", "dusk"]),
+    ("hillshade", {"multidirectional": True}, ["--multidirectional"]),
+    ("relief", {"palette": "dusk"}, ["--palette", "dusk"]),
     ("view", {"width": 160, "height": 90, "shadows": False}, ["--size", "160x90", "--no-shadows"]),
 ])
 def test_render(whole, testdata, dem, tmp_path, style, keywords, options):

@@ -57,5 +57,6 @@ def test_plain_functions_take_dataarrays(opened, holed):
 
 
 def test_several_bands_are_refused(opened):
-    with pytest.raises(ValueError, match=r"the array has 2 values along band; must be one, choose it by .isel\(band=0\)"):
+    message = r"the array has 2 values along band; must be one, choose it by .isel\(band=0\)"
+    with pytest.raises(ValueError, match=message):
         xr.concat([opened, opened], "band").dem.fill()

@@ -10,7 +10,8 @@ import traceback
 sys.path.insert(0, "/usr/share/qgis/python/plugins")
 sys.path.insert(0, os.path.expanduser("~/.local/share/QGIS/QGIS3/profiles/default/python/plugins"))
 
-from qgis.core import QgsApplication, QgsProcessingContext, QgsProcessingFeedback, QgsProcessingException, QgsRasterLayer
+from qgis.core import (QgsApplication, QgsProcessingContext, QgsProcessingException, QgsProcessingFeedback,
+                       QgsRasterLayer)
 
 VOIDS, TILE, DEM = sys.argv[1:]
 application = QgsApplication([], False)
@@ -63,8 +64,8 @@ sys.excepthook = leave
 
 
 # The other algorithms.
-made = run("generate_noise", PRESET="foothills", SIZE="65", CELL="30", CRS="EPSG:32619", ORIGIN="305000,4910000", SEED=7,
-           OUTPUT="hills.tif")
+made = run("generate_noise", PRESET="foothills", SIZE="65", CELL="30", CRS="EPSG:32619", ORIGIN="305000,4910000",
+           SEED=7, OUTPUT="hills.tif")
 layer = QgsRasterLayer(made["OUTPUT"])
 check(layer.isValid() and layer.width() == 65 and layer.crs().authid() == "EPSG:32619", "generate")
 check(run("erode", INPUT="hills.tif", STEPS=20, OUTPUT="eroded.tif")["STEPS"] == 20, "erode")
@@ -80,7 +81,8 @@ pathlib.Path("points.csv").write_text("x,y,z\n" + "".join(lines))
 run("grid_points", POINTS_FILE="points.csv", CELL="10m", TO_CRS=None, OUTPUT="grid.tif")
 check(QgsRasterLayer("grid.tif").width() > 20, "points of a file")
 pathlib.Path("points.geojson").write_text(json.dumps({"type": "FeatureCollection", "features": [
-    {"type": "Feature", "properties": {"h": x + y}, "geometry": {"type": "Point", "coordinates": [8 + x / 1e3, 46 + y / 1e3]}}
+    {"type": "Feature", "properties": {"h": x + y},
+     "geometry": {"type": "Point", "coordinates": [8 + x / 1e3, 46 + y / 1e3]}}
     for x in range(10) for y in range(10)]}))
 run("grid_points", POINTS="points.geojson", Z_FIELD="h", TO_CRS="EPSG:32632", CELL="30m", OUTPUT="layer.tif")
 check(QgsRasterLayer("layer.tif").crs().authid() == "EPSG:32632", "points of a layer")

@@ -1,4 +1,4 @@
-"""The QGIS plugin, without a window: qgis_process lists and runs its algorithms, and their outputs are those of `dem`."""
+"""The QGIS plugin, without a window: qgis_process lists and runs its algorithms. Their outputs are those of `dem`."""
 
 import json
 import os
@@ -54,20 +54,22 @@ class Qgis(unittest.TestCase):
         """The bytes of all cells, and their place: files may differ in what they say of their making only."""
         program = ("import sys; from osgeo import gdal; d = gdal.Open(sys.argv[1]); "
                    "sys.stdout.buffer.write(d.ReadRaster() + repr((d.GetGeoTransform(), d.GetProjection())).encode())")
-        return subprocess.run(["/usr/bin/python3", "-c", program, self.file(name)], capture_output=True, check=True).stdout
+        return subprocess.run(["/usr/bin/python3", "-c", program, self.file(name)], capture_output=True,
+                              check=True).stdout
 
     def test_every_algorithm_is_listed(self):
         listed = json.loads(self.process("list", "--json").stdout)["providers"]["dem"]["algorithms"]
-        generators = json.loads(subprocess.run([DEM, "methods", "--json"], capture_output=True, check=True).stdout)["generators"]
+        methods = subprocess.run([DEM, "methods", "--json"], capture_output=True, check=True).stdout
+        generators = json.loads(methods)["generators"]
         self.assertEqual({name.split(":")[1] for name in listed},
                          {"inspect_voids", "fill_voids", "grid_points", "supersample", "evaluate", "erode", "hillshade",
                           *(f"generate_{g['name']}" for g in generators)})
 
     def test_fill_voids_gives_the_bytes_of_the_command_line(self):
-        results = self.run_algorithm("fill_voids", INPUT=self.voids, METHOD="mcmd:paper", MCMD_I="0.4", INNER_ONLY="true",
-                                     OUTPUT=self.file("a.tif"), SOURCE=self.file("source.tif"))
-        subprocess.run([DEM, "fill", self.voids, self.file("b.tif"), "--method", "mcmd:paper", "--set", "I=0.4", "--inner-only",
-                        "--source", self.file("b_source.tif"), "--quiet"], check=True, timeout=60)
+        results = self.run_algorithm("fill_voids", INPUT=self.voids, METHOD="mcmd:paper", MCMD_I="0.4",
+                                     INNER_ONLY="true", OUTPUT=self.file("a.tif"), SOURCE=self.file("source.tif"))
+        subprocess.run([DEM, "fill", self.voids, self.file("b.tif"), "--method", "mcmd:paper", "--set", "I=0.4",
+                        "--inner-only", "--source", self.file("b_source.tif"), "--quiet"], check=True, timeout=60)
         self.assertEqual(self.cells("a.tif"), self.cells("b.tif"))
         self.assertEqual(pathlib.Path(self.file("source.tif")).read_bytes(),
                          pathlib.Path(self.file("b_source.tif")).read_bytes())
@@ -104,8 +106,8 @@ class Qgis(unittest.TestCase):
 
     def test_inside_qgis(self):
         """The other algorithms, progress, stopping, styles, the path as a setting: in one process (inside.py)."""
-        python = subprocess.run(["/usr/bin/python3", ROOT / "tests/qgis/inside.py", self.voids, self.tile, DEM], timeout=300,
-                                capture_output=True, text=True, cwd=self.home, env=self.environment)
+        python = subprocess.run(["/usr/bin/python3", ROOT / "tests/qgis/inside.py", self.voids, self.tile, DEM],
+                                timeout=300, capture_output=True, text=True, cwd=self.home, env=self.environment)
         self.assertEqual(python.returncode, 0, python.stdout + python.stderr)
 
 

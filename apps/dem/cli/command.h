@@ -59,7 +59,8 @@ std::string text_of(const std::vector<T>& values) {
   return text;
 }
 
-/// An option, or an argument by position. The setters return the option, so that they can be chained.
+/// An option, or an argument by position. The setters return the option, so that they can be
+/// chained.
 class Option {
  public:
   std::vector<std::string> names;    ///< {"-m", "--method"}; by position: {"IN"}
@@ -98,8 +99,9 @@ class Option {
   template <class T>
   void bind(T& variable) {
     set_ = [&variable, first = true](const std::string& text) mutable {
+      [[maybe_unused]] const bool was_first = std::exchange(first, false);
       if constexpr (requires { variable.emplace_back(); })
-        if (std::exchange(first, false)) variable.clear();  // what it held was the default
+        if (was_first) variable.clear();  // what it held was the default
       return read_value(text, variable);
     };
     now_ = [&variable] { return text_of(variable); };
@@ -148,8 +150,8 @@ class Command {
     return added;
   }
 
-  /// `names`: "--sigma" or "-m,--method". `variable`: std::string, a number, std::optional of these,
-  /// or std::vector of these (then the option may be repeated).
+  /// `names`: "--sigma" or "-m,--method". `variable`: std::string, a number, std::optional of
+  /// these, or std::vector of these (then the option may be repeated).
   template <class T>
   Option& option(const std::string& names, T& variable, std::string value, std::string doc) {
     Option& added = add(options, names, std::move(value), std::move(doc));

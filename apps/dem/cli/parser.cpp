@@ -46,8 +46,8 @@ class Reader {
     }
     give_arguments();
     for (const auto& [option, text] : given_) option->accept(text);
-    for (const Option& o : command_.options)
-      if (o.required && o.count == 0) fail(o.name() + " is missing");
+    for (const Option& option : command_.options)
+      if (option.required && option.count == 0) fail(option.name() + " is missing");
     return Parsed::all;
   }
 

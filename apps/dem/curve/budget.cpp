@@ -48,7 +48,8 @@ std::vector<const BudgetPoint*> of(const std::string& strategy,
   return some;
 }
 
-/// Cells for a wanted error, between the measured numbers by logarithms; 0: more than were measured.
+/// Cells for a wanted error, between the measured numbers by logarithms; 0: more than were
+/// measured.
 double cells_needed(const std::vector<const BudgetPoint*>& curve, double rmse_m) {
   for (std::size_t i = 0; i < curve.size(); ++i) {
     if (curve[i]->rmse_m > rmse_m) continue;

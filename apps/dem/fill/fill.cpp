@@ -5,10 +5,9 @@
 #include <optional>
 #include <tuple>
 
-#include "dem/contours.h"
+#include "dem/io/fill_job.h"
 #include "dem/io/methods.h"
-#include "fill/hole_fill.h"
-#include "fill/stream_fill.h"
+#include "fill/fill_json.h"
 #include "report/fill_report.h"
 #include "verbs.h"
 
@@ -29,18 +28,15 @@ struct Options {
   int task = 0, tasks = 0;  // --task; 0: not given
   bool whole = false;
   HoleChoice choice;
+  std::string region;
   ReadOptions read;
   WriteOptions write;
 };
 
-/// A DEM of one known cell: cheap to fill, so that bad settings show before long work.
-Dem one_cell() { return {Raster<float>({1, 1}), Mask({1, 1}, 1), {}, {}}; }
-
 /// Adds a setting that an option of its own stands for, unless it is among the settings already.
 void add_setting(ChosenMethod& chosen, const std::string& name, const std::string& value,
                  const std::string& option) {
-  if (std::ranges::find(chosen.method->fields, name, &FieldInfo::name) ==
-      chosen.method->fields.end())
+  if (!chosen.method->has_setting(name))
     throw std::invalid_argument(
         fmt::format("{}: method {} has no setting {}", option, chosen.method->name, name));
   if (std::ranges::find(chosen.settings, name, &Settings::value_type::first) ==
@@ -51,7 +47,6 @@ void add_setting(ChosenMethod& chosen, const std::string& name, const std::strin
 ChosenMethod choose(const Options& o) {
   ChosenMethod chosen = find_method(all_fill_methods(), o.method);
   for (const auto& text : o.set) chosen.settings.push_back(parse_setting(text));
-  if (!o.sigma.empty()) add_setting(chosen, "sigma", "law", "--sigma");
   if (o.realisation)
     add_setting(chosen, "realisation", std::to_string(*o.realisation), "--realisation");
   if (!o.roughness.empty()) {
@@ -59,10 +54,7 @@ ChosenMethod choose(const Options& o) {
     if (o.roughness != "auto") add_setting(chosen, "roughness", o.roughness, "--roughness");
   }
   if (o.seed) add_setting(chosen, "seed", std::to_string(*o.seed), "--seed");
-  const Filled trial = chosen.method->fill(one_cell(), chosen.settings, {});
-  if (!o.sigma.empty() && trial.sigma.empty())
-    throw std::invalid_argument("sigma: method " + chosen.method->name +
-                                " gives no standard deviation");
+  chosen.check();
   return chosen;
 }
 
@@ -73,40 +65,45 @@ std::string settings_text(const Settings& settings) {
 }
 
 /// What became of the known cells: in another type they need not be the same.
-std::string known_cells(const Options& o, const FillOutcome& out, CellType type) {
-  if (!out.known_kept) return "CHANGED";
-  const std::string sum = fmt::format(" (checksum {:016x})", out.known_checksum);
+std::string known_cells(const Options& o, const FillReport& report, CellType type) {
+  if (!report.known_kept) return "CHANGED";
+  const std::string sum = fmt::format(" (checksum {:016x})", report.known_checksum);
   if (!o.write.type || *o.write.type == type) return "unchanged" + sum;
   return "written as " + cell_type_names()[std::size_t(*o.write.type)];
 }
 
-void report(const Options& o, const ChosenMethod& chosen, const FillOutcome& out, CellType type,
-            Shell& shell) {
-  if (out.unknown == 0) {
+void say_what_was_filled(const Options& o, const FillJob& job, Shell& shell) {
+  const FillReport& report = job.report();
+  std::string left = left_text(job.plan());
+  if (report.left) left += fmt::format(", {} left unfilled", grouped(report.left));
+  if (report.memory_needed)
+    left += fmt::format(" (--memory {}M would do)", (report.memory_needed >> 20) + 1);
+  if (report.guide_cells)
+    left += fmt::format(", {} over an auxiliary DEM", grouped(report.guide_cells));
+  if (report.water_cells) left += fmt::format(", {} flat as water", grouped(report.water_cells));
+  shell.say(
+      "filled {} of {} unknown cells ({} of {} voids touch the border: {} cells){}; {}, {} "
+      "window{}, {:.3f} s; known cells {}: {}",
+      grouped(report.filled), grouped(report.unknown), grouped(report.border_holes),
+      grouped(job.plan().holes.size()), grouped(report.border_cells), left, o.method,
+      grouped(report.windows), report.windows == 1 ? "" : "s", report.seconds,
+      known_cells(o, report, job.source().type), o.out);
+}
+
+void report(const Options& o, const FillJob& job, Shell& shell) {
+  const FillReport& report = job.report();
+  const ChosenMethod& chosen = job.options().method;
+  if (report.unknown == 0) {
     shell.say("all cells are known: {} is a copy of {}", o.out, o.in);
   } else {
-    std::vector<Verdict> verdicts;
-    for (const auto& hole : out.outcomes) verdicts.push_back(hole.verdict);
-    std::string left = left_text(out.holes, verdicts);
-    if (out.left) left += fmt::format(", {} left unfilled", grouped(out.left));
-    if (out.memory_needed)
-      left += fmt::format(" (--memory {}M would do)", (out.memory_needed >> 20) + 1);
-    if (out.guide_cells)
-      left += fmt::format(", {} over an auxiliary DEM", grouped(out.guide_cells));
-    if (out.water_cells) left += fmt::format(", {} flat as water", grouped(out.water_cells));
-    shell.say(
-        "filled {} of {} unknown cells ({} of {} voids touch the border: {} cells){}; {}, {} "
-        "window{}, {:.3f} s; known cells {}: {}",
-        grouped(out.filled), grouped(out.unknown), grouped(out.border_holes),
-        grouped(out.holes.size()), grouped(out.border_cells), left, o.method, grouped(out.windows),
-        out.windows == 1 ? "" : "s", out.seconds, known_cells(o, out, type), o.out);
-    if (chosen.method->traits.for_contours && !on_contour_lines(out.figures))
+    say_what_was_filled(o, job, shell);
+    if (chosen.method->traits.for_contours && !report.contour_lines)
       shell.say("{}: the known cells are no contour lines; the spline filled the rest", o.method);
   }
-  for (const auto& fit : out.aux)
-    if (!fit.warning.empty()) shell.say("warning: {} {}", fit.path, fit.warning);
+  for (const auto& fit : report.guides)
+    if (!fit.warning.empty()) shell.say("warning: {} {}", fit.name, fit.warning);
   Json json{{"output", o.out}};
-  json.update(as_json(out, o.method, chosen.settings));
+  json.update(as_json(job.plan(), report, chosen, o.method));
   shell.print(json, "");
 }
 
@@ -146,103 +143,70 @@ WriteOptions origin_options(bool overwrite) {
 }
 
 /// What the output says of its making.
-std::vector<std::pair<std::string, std::string>> making(const Options& o,
-                                                        const ChosenMethod& chosen,
-                                                        const FillOutcome& out,
+std::vector<std::pair<std::string, std::string>> making(const Options& o, const FillJob& job,
                                                         const Shell& shell) {
-  if (out.unknown == 0 || !holds_metadata(o.out, o.write.format)) return {};
+  if (job.report().unknown == 0 || !holds_metadata(o.out, o.write.format)) return {};
   return {{"DEM_INPUT", o.in},
           {"DEM_COMMAND", shell.command},
           {"DEM_METHOD", o.method},
-          {"DEM_SETTINGS", settings_text(chosen.settings)},
-          {"DEM_KNOWN_CHECKSUM", fmt::format("{:016x}", out.known_checksum)},
+          {"DEM_SETTINGS", settings_text(job.options().method.settings)},
+          {"DEM_KNOWN_CHECKSUM", fmt::format("{:016x}", job.report().known_checksum)},
           {"DEM_VERSION", DEM_VERSION}};
 }
 
-void write_table(const Options& o, const FillOutcome& out, bool overwrite) {
-  const Json table{{"input", o.in}, {"output", o.out}, {"holes", hole_table(out, o.method)}};
+void write_table(const Options& o, const FillJob& job, bool overwrite) {
+  const Json table{{"input", o.in},
+                   {"output", o.out},
+                   {"holes", hole_table(job.plan(), job.report(), o.method)}};
   write_text(o.table, table.dump(2, ' ', false, Json::error_handler_t::replace) + "\n", overwrite);
+}
+
+void write_outputs(const Options& o, FillJob& job, Shell& shell, const Run& run) {
+  WriteOptions write = o.write;
+  write.overwrite = shell.overwrite;
+  write.metadata = making(o, job, shell);
+  if (!o.sigma.empty())
+    job.write(o.sigma, FillLayer::sigma, sigma_source(job.source()), layer_options(shell.overwrite),
+              run.part(0, 0.3));
+  if (!o.origin.empty())
+    job.write(o.origin, FillLayer::origin, origin_source(job.source()),
+              origin_options(shell.overwrite), run.part(0.3, 0.45));
+  if (!o.table.empty()) write_table(o, job, shell.overwrite);
+  job.write(o.out, FillLayer::heights, job.source(), write, run.part(0.45, 1));
+  job.finish();
 }
 
 /// Whatever the raster: its sections were made before the output was written, so that a stop while
 /// they are made leaves the output as it was.
-void write_page(const Options& o, const ChosenMethod& chosen, const FillOutcome& out, Json sections,
-                const Stopwatch& watch, Shell& shell) {
+void write_page(const Options& o, const FillJob& job, Json sections, const Stopwatch& watch,
+                Shell& shell) {
   if (o.report.empty()) return;
-  ReportPage page = fill_page(o.in, chosen, out);
+  ReportPage page = fill_page(o.in, job);
   page.sections = std::move(sections);
   page.making.insert(page.making.begin() + 1, {"output", o.out});
   write_report(o.report, page, watch, shell);
 }
 
-int exit_code(const FillOutcome& out) {
-  if (!out.known_kept) return kCheckFailed;
-  return out.left > 0 ? kUnfilled : kDone;
+int exit_code(const FillReport& report) {
+  if (!report.known_kept) return kCheckFailed;
+  return report.left > 0 ? kUnfilled : kDone;
 }
 
 /// A task leaves its cells in its journal; another run writes the output.
-int report_task(const Options& o, const FillOutcome& out, Shell& shell) {
+int report_task(const Options& o, const FillReport& report, Shell& shell) {
   shell.say(
       "task {} of {}: filled {} cells in {} window{}, {:.3f} s; when all tasks are done, the same "
       "command with --resume for --task writes {}",
-      o.task, o.tasks, grouped(out.filled), grouped(out.windows), out.windows == 1 ? "" : "s",
-      out.seconds, o.out);
+      o.task, o.tasks, grouped(report.filled), grouped(report.windows),
+      report.windows == 1 ? "" : "s", report.seconds, o.out);
   shell.print({{"output", o.out},
                {"task", o.task},
                {"tasks", o.tasks},
-               {"windows", out.windows},
-               {"filled", out.filled},
-               {"seconds", out.seconds}},
+               {"windows", report.windows},
+               {"filled", report.filled},
+               {"seconds", report.seconds}},
               "");
   return kDone;
-}
-
-/// Strip by strip, within a bound of memory.
-int fill_stream(const Options& o, const FillRequest& request, std::size_t memory, Shell& shell) {
-  const Run run = shell.run();
-  Stopwatch watch;
-  StreamFill::Options options{o.in, o.out, o.read, memory, o.task, o.tasks, o.resume, ""};
-  for (const auto& part : {o.method, settings_text(request.method.settings), o.choice.text(),
-                           o.sigma, o.table, std::string(o.whole ? "whole" : ""), o.memory, o.water,
-                           fmt::format("{}", fmt::join(o.aux, " "))})
-    options.settings += part + " | ";
-  StreamFill job(options, request, run.part(0, 0.65));
-  FillOutcome& out = job.outcome();
-  if (job.resumed_windows() > 0)
-    shell.say("resumed: {} of {} windows were done", grouped(job.resumed_windows()),
-              grouped(out.windows));
-  if (o.tasks) return report_task(o, out, shell);
-
-  watch.lap("finding holes and filling");
-  Json sections;
-  if (!o.report.empty()) {
-    const auto read = [&](const Box& box) { return job.read(box); };
-    sections = fill_sections(out, o.method, {job.size(), job.ref(), read}, run.part(0.65, 0.7));
-    watch.lap("drawing");
-  }
-
-  WriteOptions write = o.write;
-  write.overwrite = shell.overwrite;
-  write.metadata = making(o, request.method, out, shell);
-  if (!o.sigma.empty())
-    job.write(o.sigma, StreamFill::Layer::sigma, sigma_source(job.source()),
-              layer_options(shell.overwrite), run.part(0.7, 0.8));
-  if (!o.origin.empty())
-    job.write(o.origin, StreamFill::Layer::origin, origin_source(job.source()),
-              origin_options(shell.overwrite), run.part(0.8, 0.85));
-  if (!o.table.empty()) write_table(o, out, shell.overwrite);
-  job.write(o.out, StreamFill::Layer::heights, job.source(), write, run.part(0.85, 1));
-  job.finish();
-  watch.lap("writing");
-  write_page(o, request.method, out, std::move(sections), watch, shell);
-  report(o, request.method, out, job.source().type, shell);
-  return exit_code(out);
-}
-
-/// The bytes that may be used when the raster is to be worked on part by part; 0: as a whole.
-std::size_t stream_memory(const Options& o) {
-  if (!o.memory.empty()) return parse_memory("memory", o.memory);
-  return o.resume || o.tasks ? machine_memory() / 2 : 0;
 }
 
 /// "3/8".
@@ -255,13 +219,28 @@ std::pair<int, int> parse_task(const std::string& text) {
   return {task, tasks};
 }
 
+FillJob::Options job_options(const Options& o) {
+  FillJob::Options options;
+  options.read = o.read;
+  options.fill = checked({.method = choose(o),
+                          .holes = o.choice,
+                          .whole = o.whole,
+                          .sigma = !o.sigma.empty(),
+                          .rim_errors = !o.table.empty()});
+  options.files = {o.aux, o.water, o.region};
+  if (!o.memory.empty()) options.memory = parse_memory("memory", o.memory);
+  options.out = o.out;
+  options.resume = o.resume;
+  options.task = o.task;
+  options.tasks = o.tasks;
+  return options;
+}
+
 int fill(const Options& o, Shell& shell) {
   if (o.tasks && o.resume)
     throw std::invalid_argument(
         "--task goes on by itself where it was stopped: no --resume beside it");
-  const ChosenMethod chosen = choose(o);
-  check(o.choice);
-  const std::size_t memory = stream_memory(o);
+  const FillJob::Options options = job_options(o);
   WriteOptions as_asked = o.write;
   as_asked.overwrite = shell.overwrite;
   check_writable(o.out, as_asked);
@@ -269,59 +248,65 @@ int fill(const Options& o, Shell& shell) {
     if (!path.empty()) check_writable(path, shell.overwrite);
   check_report(o.report, shell.overwrite);
 
-  const FillRequest request{chosen,
-                            o.choice,
-                            o.whole,
-                            !o.table.empty(),
-                            !o.sigma.empty(),
-                            !o.origin.empty() || !o.report.empty(),
-                            o.aux,
-                            o.water};
-  if (memory > 0) return fill_stream(o, request, memory, shell);
-
   const Run run = shell.run();
   Stopwatch watch;
-  DemFile file = read_dem(o.in, o.read, run.part(0, 0.2));
-  if (count(file.dem.known) == 0)
-    throw IoError(o.in, "no known cell; at least one is needed to fill the others");
-  warn_of_outliers(file.dem, shell);
+  FillJob job(o.in, options, run.part(0, 0.2));
+  if (job.held()) warn_of_outliers(*job.held(), shell);
   watch.lap("reading");
-  const FillOutcome out = fill_holes_of(file.dem, request, run.part(0.2, 0.75));
+  job.fill(run.part(job.held() ? 0.2 : 0, 0.7));
+  if (job.report().resumed_windows > 0)
+    shell.say("resumed: {} of {} windows were done", grouped(job.report().resumed_windows),
+              grouped(job.report().windows));
   watch.lap("finding holes and filling");
+  if (o.tasks) return report_task(o, job.report(), shell);
+
   Json sections;
   if (!o.report.empty()) {
-    sections = fill_sections(out, o.method, filled_raster(file.dem, out), run.part(0.75, 0.8));
+    sections = fill_sections(job, o.method, run.part(0.7, 0.75));
     watch.lap("drawing");
   }
-
-  WriteOptions write = o.write;
-  write.overwrite = shell.overwrite;
-  write.metadata = making(o, chosen, out, shell);
-  if (!o.sigma.empty()) {
-    Dem sigma = file.dem;
-    sigma.z = out.sigma;
-    write_dem(o.sigma, sigma, sigma_source(file.source), layer_options(shell.overwrite),
-              run.part(0.8, 0.85));
-  }
-  if (!o.origin.empty()) {
-    Dem kinds{Raster<float>(file.dem.size()), Mask(file.dem.size(), 1), file.dem.ref,
-              file.dem.spacing};
-    std::ranges::copy(out.origin.cells(), kinds.z.cells().begin());
-    write_dem(o.origin, kinds, origin_source(file.source), origin_options(shell.overwrite),
-              run.part(0.85, 0.87));
-  }
-  if (!o.table.empty()) write_table(o, out, shell.overwrite);
-  write_dem(o.out, file.dem, file.source, write, run.part(0.87, 1));
+  write_outputs(o, job, shell, run.part(0.75, 1));
   watch.lap("writing");
-  write_page(o, chosen, out, std::move(sections), watch, shell);
-  report(o, chosen, out, file.source.type, shell);
-  return exit_code(out);
+  write_page(o, job, std::move(sections), watch, shell);
+  report(o, job, shell);
+  return exit_code(job.report());
 }
 
 std::string method_names() {
   std::vector<std::string> names;
   for (const auto& m : all_fill_methods()) names.push_back(m.name);
   return fmt::format("{}", fmt::join(names, ", "));
+}
+
+/// How conditions are written, for the help.
+std::string condition_help() {
+  std::string text = "Conditions: \"area_km2 < 5 and not at_border\", of";
+  std::size_t width = text.size();
+  for (const HoleFact& fact : hole_facts()) {
+    if (width + fact.name.size() > 96) text += "\n ", width = 2;
+    text += " " + fact.name;
+    width += fact.name.size() + 1;
+  }
+  return text + "\n";
+}
+
+void add_hole_options(Command& verb, HoleChoice& choice, std::string& region) {
+  verb.heading("Which voids (all by default)");
+  verb.flag("--inner-only", choice.inner_only, "Leave voids that touch the border of the raster");
+  verb.option("--max-area-km2", choice.max_area_km2, "A",
+              "Fill only voids up to this area on the ground")
+      .above(0);
+  verb.option("--max-distance-m", choice.max_distance_m, "D",
+              "Fill only voids where no cell is farther than this from the nearest known cell")
+      .above(0);
+  verb.option("--min-cells", choice.min_cells, "N",
+              "Fill only voids with at least this number of cells");
+  verb.option("--where", choice.where, "CONDITION",
+              "Fill only voids that meet a condition (see below)");
+  verb.option("--region", region, "FILE",
+              "Fill only voids with a cell in these polygons, in any format that OGR opens")
+      .kind("vector");
+  verb.heading("Options");
 }
 
 }  // namespace
@@ -334,8 +319,8 @@ void add_fill(Program& program, Shell& shell) {
       "  dem fill sparse.tif filled.tif --sigma sigma.tif           # with standard errors\n"
       "  dem fill *.hgt filled/ --memory 2G                         # tiles, filled as one DEM\n"
       "  dem fill sparse.tif filled.tif --report filled.html        # a page with pictures");
-  verb.notes = "Methods: " + method_names() + " (their settings: dem methods NAME)\n" +
-               HoleChoice::condition_help();
+  verb.notes =
+      "Methods: " + method_names() + " (their settings: dem methods NAME)\n" + condition_help();
   verb.work = [o, &shell] {
     o->in = fmt::format("{}", fmt::join(o->files, "\n"));
     return fill(*o, shell);
@@ -390,7 +375,7 @@ void add_fill(Program& program, Shell& shell) {
   verb.option_read_by(
       "--task", [o](const std::string& text) { std::tie(o->task, o->tasks) = parse_task(text); },
       "I/N", "Fill the I-th of N shares of the holes; after all of them --resume writes OUT");
-  o->choice.add_options(verb);
+  add_hole_options(verb, o->choice, o->region);
   add_read_options(verb, o->read);
   add_write_options(verb, o->write);
 }

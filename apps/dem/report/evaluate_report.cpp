@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "dem/breakdown.h"
+#include "dem/evaluation.h"
 #include "report/pictures.h"
-#include "scores.h"
 
 namespace dem::app {
 namespace {

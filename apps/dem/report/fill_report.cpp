@@ -29,14 +29,6 @@ const std::vector<KeyEntry> kOriginKey{{"measured", {190, 190, 186}},
 const std::vector<double> kSigmaBounds{0,  0.1, 0.2, 0.5, 1,   2,   3,   5,   7,   10,   15,
                                        20, 30,  50,  70,  100, 150, 200, 300, 500, 1000, INFINITY};
 
-template <class T>
-Raster<T> part_of(const Raster<T>& whole, const Box& box) {
-  auto part = Raster<T>::unset(box.size());
-  for (int row = 0; row < box.rows; ++row)
-    std::copy_n(whole.row(box.row + row).begin() + box.col, box.cols, part.row(row).begin());
-  return part;
-}
-
 /// A box of the filled raster at the size of a picture.
 struct View {
   Spacing pixel;
@@ -64,7 +56,7 @@ void add_sigma(View& view, const FilledPart& part, int row) {
 }
 
 /// Reads a box strip by strip, so that no more than a few rows of cells are held.
-View view_of(const Box& box, Spacing cell, int side, const FilledRaster& raster, const Run& run) {
+View view_of(const Box& box, Spacing cell, int side, FillJob& job, const Run& run) {
   View view;
   view.k = cells_per_pixel(box.size(), side);
   view.pixel = {cell.dx_m * view.k, cell.dy_m * view.k};
@@ -75,7 +67,7 @@ View view_of(const Box& box, Spacing cell, int side, const FilledRaster& raster,
   for (int row = 0; row < box.rows; row += strip) {
     run.report(double(row) / box.rows, "report");
     const FilledPart part =
-        raster.read({box.col, box.row + row, box.cols, std::min(strip, box.rows - row)});
+        job.read({box.col, box.row + row, box.cols, std::min(strip, box.rows - row)});
     view.z.add(row, part.dem.z, part.dem.known);
     for (std::size_t o = 0; o < view.origins.size(); ++o)
       view.origins[o].add(row, part.origin, std::uint8_t(o));
@@ -179,11 +171,14 @@ Json sigma_bars(const std::vector<std::size_t>& cells) {
 }
 
 /// How a hole was filled, in words.
-std::string filled_by(const HoleOutcome& hole, const FillOutcome& out, const std::string& method) {
-  if (hole.verdict != Verdict::fill) return fmt::format("left: {}", text_of(hole.verdict));
+std::string filled_by(const FillJob& job, std::size_t number, const std::string& method) {
+  const Verdict verdict = job.plan().verdicts[number];
+  if (verdict != Verdict::fill) return "left: " + option_of(name_of(verdict));
+  const HoleOutcome& hole = job.report().outcomes[number];
   std::vector<std::string> ways;
   if (hole.method_cells) ways.push_back(method);
-  if (hole.guide_cells) ways.push_back("over " + name_of(out.aux[std::size_t(hole.guide)].path));
+  if (hole.guide_cells)
+    ways.push_back("over " + name_of(job.report().guides[std::size_t(hole.guide)].name));
   if (hole.water_cells) ways.push_back("flat, as water");
   if (hole.left_cells) ways.push_back(fmt::format("{} cells left", grouped(hole.left_cells)));
   return fmt::format("{}", fmt::join(ways, "; "));
@@ -197,17 +192,18 @@ Box surroundings(const Hole& hole, Size raster) {
           std::min(raster.rows, hole.box.row + hole.box.rows + margin) - top};
 }
 
-Json hole_section(const FillOutcome& out, const std::string& method, const FilledRaster& raster,
-                  std::span<const Spacing> spacing, const Run& run) {
-  std::vector<std::size_t> order(out.holes.size());
+Json hole_section(FillJob& job, const std::string& method, std::span<const Spacing> spacing,
+                  const Run& run) {
+  const std::vector<Hole>& holes = job.plan().holes;
+  const std::vector<HoleOutcome>& outcomes = job.report().outcomes;
+  std::vector<std::size_t> order(holes.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::stable_sort(order, std::greater(),
-                           [&](std::size_t h) { return out.holes[h].cells; });
+  std::ranges::stable_sort(order, std::greater(), [&](std::size_t h) { return holes[h].cells; });
   const std::size_t shown = std::min(order.size(), kHolesShown);
   const bool rim = std::ranges::any_of(
-      out.outcomes, [](const HoleOutcome& hole) { return std::isfinite(hole.rim_error_m); });
-  const bool geographic = is_geographic(raster.ref);
-  const bool vast = shown > 0 && out.holes[order[0]].area_m2 > 1e5;
+      outcomes, [](const HoleOutcome& hole) { return std::isfinite(hole.rim_error_m); });
+  const bool geographic = is_geographic(job.ref());
+  const bool vast = shown > 0 && holes[order[0]].area_m2 > 1e5;
   std::vector<std::string> columns{
       "before, after",    "cells",    vast ? "area, km²" : "area, m²", "farthest from data, m",
       "relief of rim, m", "filled by"};
@@ -217,14 +213,14 @@ Json hole_section(const FillOutcome& out, const std::string& method, const Fille
 
   Json rows = Json::array();
   for (std::size_t i = 0; i < shown; ++i) {
-    const Hole& hole = out.holes[order[i]];
-    const HoleOutcome& outcome = out.outcomes[order[i]];
-    const Box box = surroundings(hole, raster.size);
+    const Hole& hole = holes[order[i]];
+    const HoleOutcome& outcome = outcomes[order[i]];
+    const Box box = surroundings(hole, job.size());
     const Spacing cell = spacing[std::size_t(box.row + box.rows / 2)];
-    const View view = view_of(box, cell, kThumbnailSide, raster,
+    const View view = view_of(box, cell, kThumbnailSide, job,
                               run.part(double(i) / double(shown), double(i + 1) / double(shown)));
     const BeforeAfter pictures = shaded(view, report_light(view.surface, view.pixel));
-    const auto& w = raster.ref.to_world;
+    const auto& w = job.ref().to_world;
     const double col = hole.box.col + (hole.box.cols - 1) / 2.0;
     const double row = hole.box.row + (hole.box.rows - 1) / 2.0;
     Json line{picture_cell({pictures.before, pictures.after}, view.pixel),
@@ -232,9 +228,10 @@ Json hole_section(const FillOutcome& out, const std::string& method, const Fille
               three_digits(hole.area_m2 / (vast ? 1e6 : 1)),
               three_digits(hole.distance_m),
               hole.has_rim ? three_digits(hole.rim_relief_m()) : "",
-              filled_by(outcome, out, method)};
+              filled_by(job, order[i], method)};
     if (rim) line.push_back(three_digits(double(outcome.rim_error_m)));
-    line.push_back(outcome.verdict == Verdict::fill ? decimal(outcome.seconds, 3) : "");
+    line.push_back(job.plan().verdicts[order[i]] == Verdict::fill ? decimal(outcome.seconds, 3)
+                                                                  : "");
     line.push_back(fmt::format("{:.{}f}, {:.{}f}", w[0] + w[1] * col + w[2] * row,
                                geographic ? 4 : 0, w[3] + w[4] * col + w[5] * row,
                                geographic ? 4 : 0));
@@ -244,14 +241,14 @@ Json hole_section(const FillOutcome& out, const std::string& method, const Fille
   std::string note = "The largest first. Red: not known.";
   if (shown < order.size()) {
     std::size_t cells = 0;
-    for (std::size_t i = shown; i < order.size(); ++i) cells += out.holes[order[i]].cells;
+    for (std::size_t i = shown; i < order.size(); ++i) cells += holes[order[i]].cells;
     note += fmt::format(" {} smaller ones, {} cells together, are not shown.",
                         grouped(order.size() - shown), grouped(cells));
   }
   return table_section(order.size() == 1 ? "The hole" : "Holes", note, columns, std::move(rows));
 }
 
-Json size_section(const FillOutcome& out) {
+Json size_section(const std::vector<Hole>& holes) {
   Bars bars;
   bars.title = "Holes by size";
   bars.note = "Below: how many holes each class has.";
@@ -259,7 +256,7 @@ Json size_section(const FillOutcome& out) {
   bars.y_label = "cells in such holes";
   bars.counts_label = "holes";
   std::size_t largest = 0;
-  for (const Hole& hole : out.holes) largest = std::max(largest, hole.cells);
+  for (const Hole& hole : holes) largest = std::max(largest, hole.cells);
   std::vector<double> cells;
   bool three = false;
   for (std::size_t from = 1, to = 3; from <= largest; three = !three) {  // 1, 3, 10, 30, 100 ...
@@ -267,7 +264,7 @@ Json size_section(const FillOutcome& out) {
                                        : fmt::format("{}k–{}k", from / 1000, to / 1000));
     bars.counts.push_back(0);
     cells.push_back(0);
-    for (const Hole& hole : out.holes)
+    for (const Hole& hole : holes)
       if (hole.cells >= from && hole.cells < to) {
         ++bars.counts.back();
         cells.back() += double(hole.cells);
@@ -288,23 +285,14 @@ Json spectrum_of(const Dem& filled) {
 
 }  // namespace
 
-FilledRaster filled_raster(const Dem& dem, const FillOutcome& out) {
-  const auto read = [&dem, &out](const Box& box) -> FilledPart {
-    return {crop(dem, box, dem.spacing), part_of(out.origin, box),
-            out.sigma.empty() ? Raster<float>() : part_of(out.sigma, box)};
-  };
-  return {dem.size(), dem.ref, read, &dem};
-}
-
-Json fill_sections(const FillOutcome& out, const std::string& method, const FilledRaster& raster,
-                   const Run& run) {
+Json fill_sections(FillJob& job, const std::string& method, const Run& run) {
   // Pictures.
-  const Size size = raster.size;
-  const auto spacing = spacing_by_row(raster.ref, size);
+  const Size size = job.size();
+  const auto spacing = spacing_by_row(job.ref(), size);
   const View view = view_of({0, 0, size.cols, size.rows}, spacing[std::size_t(size.rows / 2)],
-                            kPictureSide, raster, run.part(0, 0.6));
+                            kPictureSide, job, run.part(0, 0.6));
   const HillshadeOptions light = report_light(view.surface, view.pixel);
-  const bool sparse = 2 * out.unknown > size.cells();
+  const bool sparse = 2 * job.report().unknown > size.cells();
   const BeforeAfter pictures = shaded(view, light, sparse);
   Json sections = Json::array();
   sections.push_back(
@@ -320,38 +308,41 @@ Json fill_sections(const FillOutcome& out, const std::string& method, const Fill
 
   // Charts.
   if (sigma) sections.push_back(sigma_bars(view.cells_by_sigma));
-  if (out.holes.size() > 1) sections.push_back(size_section(out));
-  if (raster.whole)
-    if (Json spectrum = spectrum_of(*raster.whole); !spectrum.is_null())
+  if (job.plan().holes.size() > 1) sections.push_back(size_section(job.plan().holes));
+  if (job.held())
+    if (Json spectrum = spectrum_of(*job.held()); !spectrum.is_null())
       sections.push_back(std::move(spectrum));
 
-  if (!out.holes.empty())
-    sections.push_back(hole_section(out, method, raster, spacing, run.part(0.6, 1)));
+  if (!job.plan().holes.empty())
+    sections.push_back(hole_section(job, method, spacing, run.part(0.6, 1)));
   return sections;
 }
 
-ReportPage fill_page(const std::string& in, const ChosenMethod& chosen, const FillOutcome& out) {
+ReportPage fill_page(const std::string& in, const FillJob& job) {
+  const FillReport& out = job.report();
+  const ChosenMethod& chosen = job.options().method;
   ReportPage page;
   page.title = "Filling " + name_of(in);
-  page.lead = out.unknown == 0
-                  ? "All cells were known; the output is a copy."
-                  : fmt::format(
-                        "{} of {} unknown cells were filled, in {} hole{}. The known cells "
-                        "are {}.",
-                        grouped(out.filled), grouped(out.unknown), grouped(out.holes.size()),
-                        out.holes.size() == 1 ? "" : "s", out.known_kept ? "unchanged" : "CHANGED");
+  page.lead =
+      out.unknown == 0
+          ? "All cells were known; the output is a copy."
+          : fmt::format(
+                "{} of {} unknown cells were filled, in {} hole{}. The known cells "
+                "are {}.",
+                grouped(out.filled), grouped(out.unknown), grouped(job.plan().holes.size()),
+                job.plan().holes.size() == 1 ? "" : "s", out.known_kept ? "unchanged" : "CHANGED");
   page.figures = {{"cells filled", grouped(out.filled)},
                   {"cells left", grouped(out.unknown - out.filled)},
-                  {"holes", grouped(out.holes.size())},
+                  {"holes", grouped(job.plan().holes.size())},
                   {"of them at the border", grouped(out.border_holes)},
                   {"time of the filling", fmt::format("{:.3g} s", out.seconds)}};
   page.making = {{"input", in}, {"method", chosen.method->name + ": " + chosen.method->summary}};
   for (const auto& [key, value] : chosen.settings) page.making.emplace_back(key, value);
-  for (const auto& fit : out.aux) {
+  for (const auto& fit : out.guides) {
     page.making.emplace_back("auxiliary DEM",
                              fmt::format("{}: {:.1f} m below the raster (median), {:.2f} columns "
                                          "and {:.2f} rows beside it{}",
-                                         fit.path, fit.offset_m, fit.shift_cols, fit.shift_rows,
+                                         fit.name, fit.offset_m, fit.shift_cols, fit.shift_rows,
                                          fit.warning.empty() ? "" : "; " + fit.warning));
   }
   for (const auto& f : out.figures)

@@ -34,7 +34,8 @@ std::string base64(std::string_view bytes) {
 
 std::string css(Rgb c) { return fmt::format("#{:02x}{:02x}{:02x}", c[0], c[1], c[2]); }
 
-/// Shaded ground as JPEG, which takes a third of PNG's bytes; small pictures and flat colours as PNG.
+/// Shaded ground as JPEG, which takes a third of PNG's bytes; small pictures and flat colours as
+/// PNG.
 Json image(const Picture& picture, bool shaded) {
   const bool large = picture.pixels.size().cells() > 256 * 256;
   return {{"label", picture.label},

@@ -55,7 +55,8 @@ class Eroded:
 
 class Scores(types.SimpleNamespace):
     """Errors of a reconstruction: `all.rmse_m`, `filled.le90_m` (None without `sampled`) ...,
-    `unfilled_cells`, and `spectrum`: arrays wavelength_m, truth_m4, got_m4, waves."""
+    `calibration.within_1_sigma` ... (None without `sigma`), `unfilled_cells`, and `spectrum`: arrays
+    wavelength_m, truth_m4, got_m4, waves."""
 
 
 def _array(z):
@@ -190,13 +191,12 @@ def fill(z, known=None, *, method=_core.default_method, spacing=None, nodata=Non
     Copies: z once (a Dem too: it is not changed); what comes back is not copied.
     """
     dem, temporary = _as_dem(z, known, spacing, nodata, to_world, crs)
-    choice = _call.HoleChoice(inner_only, max_area_km2, max_distance_m, min_cells, where,
-                              os.fspath(region))
+    choice = _call.HoleChoice(inner_only, max_area_km2, max_distance_m, min_cells, where)
     files = [os.fspath(file) for file in ([aux] if isinstance(aux, (str, os.PathLike)) else aux)]
     with callback(progress) as call:
         filled, sigma, source, report = _call.fill(
             dem, temporary, method, _method_settings(method, settings), choice, whole, files,
-            os.fspath(water), report_holes, _threads(threads), call)
+            os.fspath(water), os.fspath(region), report_holes, _threads(threads), call)
     return Filled(filled, sigma, source, json.loads(report))
 
 
@@ -213,9 +213,10 @@ def supersample(z, factor, *, known=None, preserve="heights", nodes=None, method
     Returns a Filled: its dem has the finer lattice, its report miss_rms_m and miss_max_m.
     """
     dem, _ = _as_dem(z, known, spacing, nodata, to_world, crs)
+    how = {"factor": factor, "preserve": preserve, **({} if nodes is None else {"nodes": bool(nodes)})}
     with callback(progress) as call:
         return Filled(*_with_no_source(_call.supersample(
-            dem, factor, preserve, nodes, method, _method_settings(method, settings), _threads(threads), call)))
+            dem, _tables.as_settings(how), method, _method_settings(method, settings), _threads(threads), call)))
 
 
 def grid(x, y, z, *, like=None, bounds=None, cell="", crs="", nodes=False, point_sigma=None,
@@ -242,11 +243,13 @@ def grid(x, y, z, *, like=None, bounds=None, cell="", crs="", nodes=False, point
         like, _ = _as_dem(like)
     if bounds is not None:
         bounds = _numbers("bounds", bounds, 4, "west, south, east, north")
+    binning = _tables.as_settings({"combine": combine, "plane": not snap, "outliers": reject_outliers})
+    gridding = _tables.as_settings({"passes": passes})
     cell = f"{cell}m" if isinstance(cell, (int, float)) else cell
     with callback(progress) as call:
         return Filled(*_with_no_source(_call.grid(
-            x, y, z, point_sigma, point_weight, like, bounds, cell, crs, nodes, combine,
-            reject_outliers, snap, passes, method, _method_settings(method, settings), _threads(threads), call)))
+            x, y, z, point_sigma, point_weight, like, bounds, cell, crs, nodes, binning,
+            gridding, method, _method_settings(method, settings), _threads(threads), call)))
 
 
 def _with_no_source(result):
@@ -281,12 +284,14 @@ def sample(z, *, keep=None, count=None, every=None, edges=None, voids=None, trac
         return _call.sample(dem, *given[0], seed, method, _threads(threads), call)
 
 
-def evaluate(truth, got, sampled=None, *, spacing=None, nodata=None, to_world=None, crs="", threads=0,
-             progress=None):
-    """How near a reconstruction comes to the truth: Scores.
+def evaluate(truth, got, sampled=None, *, sigma=None, spacing=None, nodata=None, to_world=None, crs="",
+             threads=0, progress=None):
+    """Compares a reconstruction with the truth: Scores.
 
-    sampled   what `got` was made from: scores the cells that it does not know, too
-    Each of the three is an array, or a Dem; spacing and place, for arrays, are those of all.
+    sampled   what `got` was made from: the cells that it does not know are judged, too
+    sigma     an array of the predicted standard errors in metres: Scores.calibration says how well they
+              predicted the errors
+    The first three are arrays or Dems. For arrays, spacing and place are those of all.
     """
     def as_dem(z):
         own = isinstance(z, (Dem, Filled, Eroded)) or _is_dataarray(z)
@@ -294,10 +299,10 @@ def evaluate(truth, got, sampled=None, *, spacing=None, nodata=None, to_world=No
                        warn=False)[0]
     with callback(progress) as call:
         text = _call.evaluate(as_dem(truth), as_dem(got), None if sampled is None else as_dem(sampled),
-                              _threads(threads), call)
+                              None if sigma is None else np.asarray(sigma, np.float32), _threads(threads), call)
     scores = json.loads(text)
     errors = {key: value and types.SimpleNamespace(**value) for key, value in scores.items()
-              if key in ("all", "filled")}
+              if key in ("all", "filled", "calibration")}
     bins = scores["spectrum"]
     names = ["wavelength_m", "truth_m4", "got_m4", "waves"]
     spectrum = types.SimpleNamespace(**{n: np.array([b[n] for b in bins]) for n in names}) if bins else None

@@ -44,6 +44,7 @@ class Method:
     presets: tuple
     image: str = ""
     globe: bool = False
+    bytes_per_cell: int = 0  #: memory that a fill method needs; 0 for generators
 
     def __str__(self):
         lines = [f"{self.name}: {self.summary}" + (f" [{self.citation}]" if self.citation else "")]
@@ -55,6 +56,9 @@ class Method:
 
 
 def _value(kind, text):
+    """The value that a default's text stands for; None for one that is not set."""
+    if not text and kind != "text":
+        return None
     return {"number": float, "integer": int, "boolean": "true".__eq__}.get(kind, str)(text)
 
 
@@ -66,7 +70,7 @@ def _fields(rows):
 def _method(row):
     presets = tuple(Preset(p["name"], p["doc"], dict(p["settings"])) for p in row["presets"])
     return Method(row["name"], row["summary"], row["citation"], _fields(row["fields"]), presets,
-                  row.get("image", ""), row.get("globe", False))
+                  row.get("image", ""), row.get("globe", False), row.get("bytes_per_cell", 0))
 
 
 def methods():
@@ -77,6 +81,11 @@ def methods():
 def generators():
     """The terrain generators, as a dict from name to Method."""
     return {row["name"]: _method(row) for row in _core.generators()}
+
+
+def option_fields():
+    """The fields of options that are not a method's, as a dict: bin, gridding, supersample, write."""
+    return {name: _fields(rows) for name, rows in _core.option_fields().items()}
 
 
 def erosion_fields():

@@ -160,8 +160,8 @@ class _Job:
     threads: int
 
     def open(self):
-        return _core.SharedRaster(self.mosaic, self.nodata, self.method, list(self.settings),
-                                  _core.HoleChoice(*self.choice), self.whole, list(self.aux), self.water, self.memory)
+        return _core.SharedFill(self.mosaic, self.nodata, self.method, list(self.settings),
+                                _core.HoleChoice(*self.choice), self.whole, list(self.aux), self.water, self.memory)
 
     def check(self):
         """Tells of bad settings before any work."""
@@ -326,8 +326,8 @@ def _gather(futures, report, first, last, what):
         if future.status == "error":
             error = future.exception()
             if isinstance(error, KilledWorker):
-                raise RuntimeError(f"{what}: workers died again and again at {future.key}; what is done is kept, the same "
-                                   "call goes on from there (fewer threads per worker need less memory)") from None
+                raise RuntimeError(f"{what}: workers died again and again at {future.key}; what is done is kept, the "
+                                   "same call goes on from there (fewer threads per worker need less memory)") from None
             raise error
         if report:
             report(first + (last - first) * n / len(futures), what)
@@ -372,7 +372,7 @@ def fill_mosaic(sources, out_dir, client=None, *, method=_core.default_method, n
         stamps += [_stamp(file) for file in files]
     outs = _outputs([_Tile(file, ()) for file in files], out_dir)
     text = _api._method_settings(method, settings)
-    choice = (inner_only, max_area_km2, max_distance_m, min_cells, where, "")
+    choice = (inner_only, max_area_km2, max_distance_m, min_cells, where)
     aux = tuple(os.path.abspath(file) for file in ([aux] if isinstance(aux, (str, os.PathLike)) else aux))
     water = os.path.abspath(water) if water else ""
     told = [_core.version, stamps, nodata, method, text, choice, whole, aux, water, str(memory), bundle_cells]

@@ -14,8 +14,8 @@ namespace dem::python {
 
 namespace py = pybind11;
 
-/// A DEM from an array of heights, copied once: float32, float64 or an integer of up to 32 bits, any
-/// strides. Unknown: where `known` (an array of its shape, or None) is 0, where z is no finite
+/// A DEM from an array of heights, copied once: float32, float64 or an integer of up to 32 bits,
+/// any strides. Unknown: where `known` (an array of its shape, or None) is 0, where z is no finite
 /// number, and where it is `nodata`. Values that float32 may not hold are kept as Source::exact.
 /// Throws std::invalid_argument that says what is wrong with the arrays.
 DemFile dem_from_arrays(const py::array& z, const py::object& known,

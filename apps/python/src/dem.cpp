@@ -15,22 +15,10 @@
 namespace dem::python {
 namespace {
 
-constexpr std::pair<const char*, CellType> kTypes[] = {
-    {"int8", CellType::int8},       {"uint8", CellType::uint8},    {"int16", CellType::int16},
-    {"uint16", CellType::uint16},   {"int32", CellType::int32},    {"uint32", CellType::uint32},
-    {"float32", CellType::float32}, {"float64", CellType::float64}};
-
-const char* name_of(CellType type) {
-  return std::ranges::find(kTypes, type, &std::pair<const char*, CellType>::second)->first;
-}
-
 CellType type_of(const std::string& name) {
-  for (const auto& [text, type] : kTypes)
-    if (text == name) return type;
-  throw std::invalid_argument(
-      fmt::format("dtype = {}; must be int8, uint8, int16, uint16, int32, "
-                  "uint32, float32 or float64",
-                  name));
+  CellType type{};
+  Field("dtype", type, cell_type_names(), "").set(name);
+  return type;
 }
 
 using Six = std::array<double, 6>;
@@ -49,7 +37,7 @@ DemFile make(const py::array& z, const py::object& known, const std::optional<do
   if (spacing && !crs.empty())
     throw std::invalid_argument("crs needs to_world, the place of the cells in it");
   dem.ref = {to_world.value_or(Six{0, dx, 0, 0, 0, -dy}), crs_wkt(crs)};
-  dem.spacing = middle_spacing(dem.ref, dem.size());
+  set_spacing(dem);
   return file;
 }
 
@@ -149,7 +137,7 @@ void bind_dem(py::module_& module) {
       .def_property_readonly(
           "crs", [](const DemFile& f) { return f.dem.ref.crs_wkt; }, "WKT, or \"\"")
       .def_property_readonly(
-          "dtype", [](const DemFile& f) { return name_of(f.source.type); },
+          "dtype", [](const DemFile& f) { return cell_type_names()[std::size_t(f.source.type)]; },
           "type of the original values; `write` keeps it")
       .def_property_readonly("nodata", [](const DemFile& f) { return f.source.nodata; })
       .def_property_readonly("format", [](const DemFile& f) { return f.source.format; })

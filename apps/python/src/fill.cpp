@@ -11,11 +11,12 @@
 #include "call.h"
 #include "dem/contours.h"
 #include "dem/gridding.h"
+#include "dem/io/fill_files.h"
 #include "dem/io/geodesy.h"
 #include "dem/io/lattices.h"
 #include "dem/io/point_files.h"
 #include "dem/supersample.h"
-#include "fill/hole_fill.h"
+#include "fill/fill_json.h"
 #include "settings.h"
 
 namespace dem::python {
@@ -45,48 +46,42 @@ py::list as_list(const std::vector<Figure>& figures) {
 }
 
 /// `temporary`: the Dem is nobody else's, and is filled in place.
-py::tuple fill(DemFile& of, bool temporary, const std::string& method, const Settings& settings,
-               const app::HoleChoice& choice, bool whole, const std::vector<std::string>& aux,
-               const std::string& water, bool hole_table, int threads, const py::object& progress) {
+py::tuple fill(DemFile& of, bool temporary, const FillOptions& wish, const FillFiles& files,
+               const std::string& method, int threads, const py::object& progress) {
   check_known(of.dem);
-  check(choice);
-  const ChosenMethod chosen = choose_method(method, settings);
-  const app::FillRequest request{chosen, choice, whole, hole_table, gives_sigma(chosen),
-                                 true,   aux,    water};
+  const FillOptions options = checked(wish);
   auto file = std::make_unique<DemFile>();
-  app::FillOutcome out;
+  HoleFill out;
   Json report;
   Call call(threads, progress);
   call([&](const Run& run) {
     *file = temporary ? std::move(of) : of;
-    out = app::fill_holes_of(file->dem, request, run);
-    report = as_json(out, method, chosen.settings);
-    if (hole_table) report["holes"] = app::hole_table(out, method);
+    const FillLayers layers = open_layers(files, file->dem.ref);
+    out = fill_holes(std::move(file->dem), options, layers, run);
+    file->dem = std::move(out.dem);
+    report = app::as_json(out.plan, out.report, options.method, method);
+    if (options.rim_errors) report["holes"] = app::hole_table(out.plan, out.report, method);
   });
   return py::make_tuple(py::cast(std::move(file)), sigma_array(std::move(out.sigma)),
                         array_from(std::move(out.origin)),
                         report.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
-Preserve preserve_of(const std::string& name) {
-  if (name == "heights") return Preserve::heights;
-  if (name == "block-mean") return Preserve::means;
-  throw std::invalid_argument("preserve = " + name + "; must be heights or block-mean");
-}
-
 DemFile whole_dem(Raster<float>&& z, const Lattice& lattice, bool nodes) {
   DemFile file{{std::move(z), Mask(lattice.size, 1), lattice.ref, lattice.spacing}, {}};
   file.source.node_registered = nodes;
+  set_row_spacing(file.dem);
   return file;
 }
 
-py::tuple make_finer(const DemFile& coarse, double factor, const std::string& preserve,
-                     const std::optional<bool>& nodes, const std::string& method,
+/// `how`: settings of SupersampleOptions; nodes as the file says, unless they say so.
+py::tuple make_finer(const DemFile& coarse, const Settings& how, const std::string& method,
                      const Settings& settings, int threads, const py::object& progress) {
   check_known(coarse.dem);
   const ChosenMethod chosen = choose_method(method, settings);
-  const SupersampleOptions options{factor, preserve_of(preserve),
-                                   nodes.value_or(coarse.source.node_registered)};
+  SupersampleOptions options;
+  options.nodes = coarse.source.node_registered;
+  apply(how, fields(options));
   Supersampled fine = Call(threads, progress)(
       [&](const Run& run) { return supersample(coarse.dem, chosen, options, run); });
   py::dict report;
@@ -139,14 +134,6 @@ Points points_of(const Doubles& x, const Doubles& y, const Doubles& z,
   return points;
 }
 
-Combine combine_of(const std::string& name) {
-  const std::string_view names[] = {"mean", "min", "max", "median"};
-  const auto found = std::ranges::find(names, name);
-  if (found == std::end(names))
-    throw std::invalid_argument("combine = " + name + "; must be mean, min, max or median");
-  return Combine(found - std::begin(names));
-}
-
 Lattice lattice_of(const Points& points, const std::optional<std::array<double, 4>>& bounds,
                    const std::string& cell, const std::string& crs, bool nodes) {
   Extent extent;
@@ -168,13 +155,13 @@ Lattice lattice_of(const Points& points, const std::optional<std::array<double, 
 py::tuple grid(const Doubles& x, const Doubles& y, const Doubles& z,
                const std::optional<Doubles>& sigma, const std::optional<Doubles>& weight,
                const DemFile* like, const std::optional<std::array<double, 4>>& bounds,
-               const std::string& cell, const std::string& crs, bool nodes,
-               const std::string& combine, double outliers, bool snap, int passes,
-               const std::string& method, const Settings& settings, int threads,
-               const py::object& progress) {
+               const std::string& cell, const std::string& crs, bool nodes, const Settings& binning,
+               const Settings& gridding, const std::string& method, const Settings& settings,
+               int threads, const py::object& progress) {
   const ChosenMethod chosen = choose_method(method, settings);
   const Points points = points_of(x, y, z, sigma, weight);
-  const BinOptions bin{combine_of(combine), !snap, outliers};
+  const auto bin = checked_options<BinOptions>(binning);
+  const auto passes = checked_options<GriddingOptions>(gridding);
   if (like && (bounds || !cell.empty() || !crs.empty()))
     throw std::invalid_argument("like says it all: no bounds, cell or crs beside it");
   const Lattice lattice = like ? Lattice{like->dem.ref, like->dem.size(), like->dem.spacing}
@@ -185,8 +172,8 @@ py::tuple grid(const Doubles& x, const Doubles& y, const Doubles& z,
     counts = binned.counts;
     if (counts.cells == 0)
       throw std::invalid_argument("no point lies on the lattice; are x and y in its system?");
-    if (snap) binned.off_centre.clear();
-    return fill_points(binned, chosen, {passes}, run.part(0.3, 1));
+    if (!bin.plane) binned.off_centre.clear();
+    return fill_points(binned, chosen, passes, run.part(0.3, 1));
   });
   py::dict report;
   report["points"] = counts.points;
@@ -207,16 +194,13 @@ py::tuple grid(const Doubles& x, const Doubles& y, const Doubles& z,
 
 void bind_fill(py::module_& module) {
   using namespace py::literals;
-  py::class_<app::HoleChoice>(module, "HoleChoice")
+  py::class_<HoleChoice>(module, "HoleChoice")
       .def(py::init([](bool inner_only, const std::optional<double>& max_area_km2,
                        const std::optional<double>& max_distance_m,
-                       const std::optional<std::size_t>& min_cells, const std::string& where,
-                       const std::string& region) {
-             return app::HoleChoice{inner_only, max_area_km2, max_distance_m,
-                                    min_cells,  where,        region};
+                       const std::optional<std::size_t>& min_cells, const std::string& where) {
+             return HoleChoice{inner_only, max_area_km2, max_distance_m, min_cells, where};
            }),
-           "inner_only"_a, "max_area_km2"_a, "max_distance_m"_a, "min_cells"_a, "where"_a,
-           "region"_a);
+           "inner_only"_a, "max_area_km2"_a, "max_distance_m"_a, "min_cells"_a, "where"_a);
   module.def("hole_facts", [] {
     std::vector<std::pair<std::string, std::string>> facts;
     for (const HoleFact& fact : hole_facts()) facts.emplace_back(fact.name, fact.doc);
@@ -230,13 +214,23 @@ void bind_fill(py::module_& module) {
                                      {"left", CellOrigin::left}})
     origins.append(py::make_tuple(name, int(origin)));
   module.attr("cell_origins") = origins;
-  module.def("fill", &fill, "dem"_a, "temporary"_a, "method"_a, "settings"_a, "choice"_a, "whole"_a,
-             "aux"_a, "water"_a, "hole_table"_a, "threads"_a, "progress"_a);
-  module.def("supersample", &make_finer, "dem"_a, "factor"_a, "preserve"_a, "nodes"_a, "method"_a,
-             "settings"_a, "threads"_a, "progress"_a);
+  module.def(
+      "fill",
+      [](DemFile& dem, bool temporary, const std::string& method, const Settings& settings,
+         const HoleChoice& choice, bool whole, const std::vector<std::string>& aux,
+         const std::string& water, const std::string& region, bool hole_table, int threads,
+         const py::object& progress) {
+        const FillOptions options{choose_method(method, settings), choice, whole, false,
+                                  hole_table};
+        return fill(dem, temporary, options, {aux, water, region}, method, threads, progress);
+      },
+      "dem"_a, "temporary"_a, "method"_a, "settings"_a, "choice"_a, "whole"_a, "aux"_a, "water"_a,
+      "region"_a, "hole_table"_a, "threads"_a, "progress"_a);
+  module.def("supersample", &make_finer, "dem"_a, "how"_a, "method"_a, "settings"_a, "threads"_a,
+             "progress"_a);
   module.def("grid", &grid, "x"_a, "y"_a, "z"_a, "sigma"_a, "weight"_a, "like"_a, "bounds"_a,
-             "cell"_a, "crs"_a, "nodes"_a, "combine"_a, "outliers"_a, "snap"_a, "passes"_a,
-             "method"_a, "settings"_a, "threads"_a, "progress"_a);
+             "cell"_a, "crs"_a, "nodes"_a, "binning"_a, "gridding"_a, "method"_a, "settings"_a,
+             "threads"_a, "progress"_a);
 }
 
 }  // namespace dem::python

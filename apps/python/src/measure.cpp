@@ -8,8 +8,8 @@
 #include "call.h"
 #include "dem/draw.h"
 #include "dem/raytrace.h"
+#include "evaluation_json.h"
 #include "places.h"
-#include "scores.h"
 
 namespace dem::python {
 namespace {
@@ -21,24 +21,19 @@ void check_size(const Dem& dem, const char* name, Size size) {
                                             size.cols));
 }
 
-/// Scores as JSON.
-std::string evaluate(const DemFile& truth, const DemFile& got, const DemFile* sampled, int threads,
+/// An evaluation as JSON.
+std::string evaluate(const DemFile& truth, const DemFile& got, const DemFile* sampled,
+                     const std::optional<py::array_t<float>>& sigma, int threads,
                      const py::object& progress) {
   check_size(got.dem, "got", truth.dem.size());
   if (sampled) check_size(sampled->dem, "sampled", truth.dem.size());
-  const app::Scores scores = Call(threads, progress)([&](const Run& run) {
-    const Mask comparable = app::known_in_both(truth.dem, got.dem);
-    if (count(comparable) == 0)
-      throw std::invalid_argument("no cell is known in both truth and got");
-    Mask filled;
-    if (sampled) {
-      filled = app::without_known(comparable, sampled->dem);
-      if (count(filled) == 0)
-        throw std::invalid_argument("every cell is known in sampled; no filled cell to score");
-    }
-    return app::score(truth.dem, got.dem, comparable, filled, {}, run);
+  Raster<float> sigma_m;
+  if (sigma) sigma_m = dem_from_arrays(*sigma, py::none(), {}).dem.z;
+  const Evaluation evaluation = Call(threads, progress)([&](const Run& run) {
+    return evaluate_dem(truth.dem, got.dem,
+                        {sampled ? &sampled->dem : nullptr, sigma ? &sigma_m : nullptr}, run);
   });
-  return app::as_json(scores).dump();
+  return app::as_json(evaluation).dump();
 }
 
 py::array picture_array(Raster<Rgb>&& picture) {
@@ -82,7 +77,8 @@ py::array render(const DemFile& file, const std::string& style, const Settings& 
 
 void bind_measure(py::module_& module) {
   using namespace py::literals;
-  module.def("evaluate", &evaluate, "truth"_a, "got"_a, "sampled"_a, "threads"_a, "progress"_a);
+  module.def("evaluate", &evaluate, "truth"_a, "got"_a, "sampled"_a, "sigma"_a, "threads"_a,
+             "progress"_a);
   module.def("render", &render, "dem"_a, "style"_a, "settings"_a, "camera"_a, "target"_a,
              "threads"_a, "progress"_a);
 }

@@ -15,7 +15,8 @@ PYBIND11_MODULE(_core, module) {
     try {
       if (error) std::rethrow_exception(error);
     } catch (const dem::IoError& e) {
-      PyErr_SetString(PyExc_OSError, e.what());
+      const std::string hint = e.field().empty() ? "" : " (" + e.field() + ")";
+      PyErr_SetString(PyExc_OSError, (e.what() + hint).c_str());
     } catch (const dem::Cancelled&) {
       PyErr_SetString(PyExc_KeyboardInterrupt, "stopped by the progress callback");
     }

@@ -1,4 +1,4 @@
-// What a worker of libdem.distributed does: see apps/dem/fill/tasks.h.
+// What a worker of libdem.distributed does: see dem/io/shared_fill.h.
 
 #include <pybind11/stl.h>
 
@@ -7,9 +7,10 @@
 
 #include "bind.h"
 #include "call.h"
+#include "common.h"
+#include "dem/io/fill_job.h"
 #include "dem/io/raster_stream.h"
-#include "fill/stream_fill.h"
-#include "fill/tasks.h"
+#include "dem/io/shared_fill.h"
 #include "settings.h"
 
 namespace dem::python {
@@ -19,28 +20,28 @@ using Four = std::array<int, 4>;
 
 Box box_of(const Four& box) { return {box[0], box[1], box[2], box[3]}; }
 
-std::unique_ptr<app::SharedRaster> open(const std::string& path,
-                                        const std::optional<double>& nodata,
-                                        const std::string& method, const Settings& settings,
-                                        const app::HoleChoice& choice, bool whole,
-                                        const std::vector<std::string>& aux,
-                                        const std::string& water, const std::string& memory) {
+FillOptions options_of(const std::string& method, const Settings& settings,
+                       const HoleChoice& choice, bool whole) {
+  return checked({choose_method(method, settings), choice, whole});
+}
+
+std::unique_ptr<SharedFill> open(const std::string& path, const std::optional<double>& nodata,
+                                 const std::string& method, const Settings& settings,
+                                 const HoleChoice& choice, bool whole,
+                                 const std::vector<std::string>& aux, const std::string& water,
+                                 const std::string& memory) {
   ReadOptions read;
   read.nodata = nodata;
   read.detect_nodata = false;
-  return std::make_unique<app::SharedRaster>(
-      path, read,
-      app::FillRequest{choose_method(method, settings), choice, whole, false, false, false, aux,
-                       water},
-      app::parse_memory("memory", memory));
+  return std::make_unique<SharedFill>(path, read, options_of(method, settings, choice, whole),
+                                      FillFiles{aux, water, ""}, parse_memory("memory", memory));
 }
 
 /// Throws for settings that no raster would do with.
-void check_job(const std::string& method, const Settings& settings, const app::HoleChoice& choice,
+void check_job(const std::string& method, const Settings& settings, const HoleChoice& choice,
                const std::string& memory) {
-  choose_method(method, settings);
-  check(choice);
-  app::parse_memory("memory", memory);
+  options_of(method, settings, choice, false);
+  parse_memory("memory", memory);
 }
 
 /// Which of many boxes hold a place, by squares.
@@ -77,8 +78,9 @@ class BoxIndex {
   std::unordered_map<std::uint64_t, std::vector<std::size_t>> squares_;
 };
 
-/// Bundles as (bytes, cells of windows, numbers of the tiles that they fill), and the plan in numbers.
-py::tuple plan(const app::SharedRaster& raster, const std::vector<std::string>& parts,
+/// Bundles as (bytes, cells of windows, numbers of the tiles that they fill), and the plan in
+/// numbers.
+py::tuple plan(const SharedFill& raster, const std::vector<std::string>& parts,
                const std::vector<Four>& tiles, std::size_t bundle_cells,
                const py::object& progress) {
   struct Made {
@@ -87,52 +89,51 @@ py::tuple plan(const app::SharedRaster& raster, const std::vector<std::string>& 
     std::vector<std::size_t> tiles;
   };
   std::vector<Made> made;
-  app::FillOutcome outcome;
+  FillPlan plan;
   Call(0, progress)([&](const Run& run) {
     std::vector<HolePart> all;
-    for (const std::string& bytes : parts) all.push_back(app::part_from_bytes(bytes));
+    for (const std::string& bytes : parts) all.push_back(part_from_bytes(bytes));
     run.report(0.1, "joining parts");
-    std::vector<Hole> holes;
-    const app::FillPlan plan = raster.plan(all, holes, outcome);
+    plan = raster.plan(all);
     run.report(0.9, "planning");
     const BoxIndex index(tiles);
-    for (const app::Bundle& bundle : app::make_bundles(plan, holes, bundle_cells)) {
-      Made& m = made.emplace_back(Made{bundle.bytes(), 0, {}});
+    for (const FillPlan& bundle : bundles_of(plan, bundle_cells)) {
+      Made& m = made.emplace_back(Made{bytes_of(bundle), 0, {}});
       for (const HoleWindow& window : bundle.windows) m.cells += window.box.cells();
       for (const Hole& hole : bundle.holes) index.add_touched(hole.box, m.tiles);
       std::ranges::sort(m.tiles);
       m.tiles.erase(std::unique(m.tiles.begin(), m.tiles.end()), m.tiles.end());
     }
-    outcome.holes = std::move(holes);
   });
   py::list bundles;
   for (const Made& m : made) bundles.append(py::make_tuple(py::bytes(m.bytes), m.cells, m.tiles));
+  const FillReport counts = report_of(plan);
   py::dict report;
-  report["unknown"] = outcome.unknown;
-  report["voids"] = outcome.holes.size();
-  report["border_voids"] = outcome.border_holes;
-  report["windows"] = outcome.windows;
-  report["left_by_choice"] = outcome.left_by_choice + outcome.left_at_border;
+  report["unknown"] = counts.unknown;
+  report["voids"] = plan.holes.size();
+  report["border_voids"] = counts.border_holes;
+  report["windows"] = counts.windows;
+  report["left_by_choice"] = counts.left_by_choice + counts.left_at_border;
   return py::make_tuple(bundles, report);
 }
 
-py::dict fill(app::SharedRaster& raster, const std::string& bytes, const std::string& path,
+py::dict fill(SharedFill& raster, const std::string& bytes, const std::string& path,
               const std::string& key, int threads, const py::object& progress) {
-  const app::Bundle bundle = app::Bundle::from_bytes(bytes);
-  const app::BundleOutcome done =
+  const FillPlan bundle = plan_from_bytes(bytes);
+  const FillReport done =
       Call(threads, progress)([&](const Run& run) { return raster.fill(bundle, path, key, run); });
   py::dict out;
   out["filled"] = done.filled;
   out["left"] = done.left;
-  out["water"] = done.water;
-  out["over_aux"] = done.over_aux;
+  out["water"] = done.water_cells;
+  out["over_aux"] = done.guide_cells;
   out["windows"] = done.windows;
-  out["resumed"] = done.resumed;
-  out["seconds"] = done.seconds;
+  out["resumed"] = done.resumed_windows;
+  out["seconds"] = done.window_seconds;
   return out;
 }
 
-std::size_t write_tile(app::SharedRaster& raster, const std::string& tile, const Four& box,
+std::size_t write_tile(SharedFill& raster, const std::string& tile, const Four& box,
                        const std::vector<std::string>& journals, const std::string& key,
                        const std::string& out,
                        const std::vector<std::pair<std::string, std::string>>& metadata) {
@@ -169,17 +170,16 @@ void bind_mosaic(py::module_& module) {
   module.def("describe", &describe, "path"_a);
   module.def("tiles_in", &tiles_in, "folder"_a);
   module.def("check_job", &check_job, "method"_a, "settings"_a, "choice"_a, "memory"_a);
-  py::class_<app::SharedRaster>(module, "SharedRaster")
+  py::class_<SharedFill>(module, "SharedFill")
       .def(py::init(&open), "path"_a, "nodata"_a, "method"_a, "settings"_a, "choice"_a, "whole"_a,
            "aux"_a, "water"_a, "memory"_a)
       .def_property_readonly(
-          "size",
-          [](const app::SharedRaster& r) { return std::pair(r.size().cols, r.size().rows); })
+          "size", [](const SharedFill& r) { return std::pair(r.size().cols, r.size().rows); })
       .def(
           "scan",
-          [](app::SharedRaster& raster, const Four& part) {
-            return py::bytes(Call(1, py::none())(
-                [&](const Run&) { return app::bytes_of(raster.scan(box_of(part))); }));
+          [](SharedFill& raster, const Four& part) {
+            return py::bytes(Call(
+                1, py::none())([&](const Run&) { return bytes_of(raster.scan(box_of(part))); }));
           },
           "part"_a)
       .def("plan", &plan, "parts"_a, "tiles"_a, "bundle_cells"_a, "progress"_a)

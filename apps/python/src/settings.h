@@ -13,14 +13,8 @@ namespace dem::python {
 inline ChosenMethod choose_method(const std::string& name, const Settings& settings) {
   ChosenMethod chosen = find_method(all_fill_methods(), name);
   chosen.settings.insert(chosen.settings.end(), settings.begin(), settings.end());
-  chosen.method->fill({Raster<float>({1, 1}), Mask({1, 1}, 1), {}, {}}, chosen.settings, {});
+  chosen.check();
   return chosen;
-}
-
-/// Whether the method, so set, gives a standard deviation.
-inline bool gives_sigma(const ChosenMethod& chosen) {
-  const Dem one{Raster<float>({1, 1}), Mask({1, 1}, 1), {}, {}};
-  return !chosen.method->fill(one, chosen.settings, {}).sigma.empty();
 }
 
 }  // namespace dem::python

@@ -6,8 +6,11 @@
 #include "dem/draw.h"
 #include "dem/erosion.h"
 #include "dem/generators.h"
+#include "dem/gridding.h"
 #include "dem/io/methods.h"
+#include "dem/io/rasters.h"
 #include "dem/raytrace.h"
+#include "dem/supersample.h"
 
 namespace dem::python {
 
@@ -66,7 +69,11 @@ void bind_tables(py::module_& module) {
   module.attr("default_method") = std::string(default_fill_method());
   module.def("methods", [] {
     py::list all;
-    for (const FillMethod& m : all_fill_methods()) all.append(as_dict(m));
+    for (const FillMethod& m : all_fill_methods()) {
+      py::dict row = as_dict(m);
+      row["bytes_per_cell"] = m.traits.bytes_per_cell.value;
+      all.append(row);
+    }
     return all;
   });
   module.def("generators", [] {
@@ -78,6 +85,14 @@ void bind_tables(py::module_& module) {
       all.append(row);
     }
     return all;
+  });
+  module.def("option_fields", [] {
+    py::dict options;
+    options["bin"] = fields_of<BinOptions>();
+    options["gridding"] = fields_of<GriddingOptions>();
+    options["supersample"] = fields_of<SupersampleOptions>();
+    options["write"] = fields_of<WriteOptions>();
+    return options;
   });
   module.def("erosion_fields", &fields_of<ErosionOptions>);
   module.def("style_fields", [] {

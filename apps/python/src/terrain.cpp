@@ -12,6 +12,7 @@
 #include "dem/generators.h"
 #include "dem/greedy.h"
 #include "dem/io/drawing.h"
+#include "dem/io/geodesy.h"
 #include "dem/sample.h"
 #include "places.h"
 #include "settings.h"
@@ -21,6 +22,7 @@ namespace {
 
 std::unique_ptr<DemFile> with_source(Dem&& dem, const Source& source) {
   auto file = std::make_unique<DemFile>(DemFile{std::move(dem), source});
+  set_row_spacing(file->dem);
   return file;
 }
 

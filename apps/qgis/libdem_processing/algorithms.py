@@ -152,9 +152,10 @@ class DemAlgorithm(QgsProcessingAlgorithm):
             self.add(self.options, name, {**argument, "doc": argument["doc"].split(":")[-1].strip()
                                           if argument["names"] == ["FILES"] else argument["doc"]}, parameters.of_option)
             return
-        self.add(self.options, name, {**argument, "required": False}, parameters.of_option, "a layer of points or lines")
-        self.addParameter(QgsProcessingParameterFile("POINTS_FILE", "Points file: instead of a layer, CSV, XYZ, TSV or LAS",
-                                                     optional=True))
+        self.add(self.options, name, {**argument, "required": False}, parameters.of_option,
+                 "a layer of points or lines")
+        self.addParameter(QgsProcessingParameterFile(
+            "POINTS_FILE", "Points file: instead of a layer, CSV, XYZ, TSV or LAS", optional=True))
 
     def add_settings(self):
         if self.task.generator and self.task.generator["presets"]:

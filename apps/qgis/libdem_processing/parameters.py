@@ -155,8 +155,10 @@ def of_field(name, field, method=""):
     title += f" [{field['default']}{' ' + field['unit'] if field['unit'] else ''}]"
     if field["choices"]:
         return choice(name, title, True, field["choices"])
-    between = re.fullmatch(r"\[(.+), (.+)\]", field["range"])
-    above = re.fullmatch(r">= (.+)", field["range"])
+    if field["type"] == "text":
+        return text(name, title, True)
+    between = re.fullmatch(r"[\[(](.+), (.+)\]", field["range"])
+    above = re.fullmatch(r">=? (.+)", field["range"])
     low, high = map(float, between.groups()) if between else (float(above[1]) if above else None, None)
     return number(name, title, True, low, high, whole=field["type"] == "integer")
 

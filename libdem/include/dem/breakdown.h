@@ -1,6 +1,6 @@
 #pragma once
-// Errors broken down: how they spread, and how they depend on slope, on the distance to data, or on
-// the standard deviation that was foretold.
+// Errors by class: their distribution, and how they depend on slope, on the distance to data, or on
+// the predicted standard error.
 
 #include <cstddef>
 #include <span>
@@ -10,10 +10,10 @@
 
 namespace dem {
 
-/// How many values lie in each of some bins of equal width.
+/// The number of values in each of several bins of equal width.
 struct Histogram {
-  double low = 0, high = 0;        ///< the first bin's lower and the last one's upper end
-  std::vector<std::size_t> cells;  ///< of each bin; a bin holds its lower end, the last both
+  double low = 0, high = 0;        ///< lower end of the first bin, upper end of the last
+  std::vector<std::size_t> cells;  ///< in each bin; a bin includes its lower end, the last one both
   std::size_t below = 0, above = 0;
 
   double width() const { return (high - low) / double(cells.size()); }
@@ -24,28 +24,30 @@ struct Histogram {
 Histogram histogram(const Raster<float>& values, const Mask& where, double low, double high,
                     int bins);
 
-/// Values below which the given parts (0 to 1, in any order) of the cells lie, where `where` is 1:
-/// nearest rank.
-/// Throws: std::invalid_argument unless sizes agree, a cell is chosen and the parts are in [0, 1].
+/// The quantiles of the cells where `where` is 1, by nearest rank.
+/// `parts` are numbers from 0 to 1, in any order.
+/// Throws: std::invalid_argument unless sizes agree, at least one cell is chosen and the parts are
+///         in [0, 1].
 std::vector<double> quantiles(const Raster<float>& values, const Mask& where,
                               std::span<const double> parts);
 
-/// Errors of the cells where something else lies in [from, to).
+/// The errors of the cells whose value in another raster lies in [from, to).
 struct ErrorClass {
   double from = 0, to = 0;
   std::size_t cells = 0;
-  double rmse_m = 0, bias_m = 0;  ///< NaN where there is no cell
-  double by_rms = 0;              ///< root mean square of what the classes are made by
+  double rmse_m = 0, bias_m = 0;  ///< NaN when the class has no cell
+  double by_rms = 0;              ///< root mean square of the values that define the class
 };
 
-/// Breaks `error` down by another raster, where `where` is 1. Cells outside all classes count in
-/// none.
-/// Needs:  `bounds` ascending: n + 1 of them make n classes.
+/// Groups `error` by the values of another raster, where `where` is 1.
+/// Cells outside all classes are not counted.
+/// Needs:  `bounds` in ascending order; n + 1 bounds make n classes.
 /// Throws: std::invalid_argument.
 std::vector<ErrorClass> errors_by(const Raster<float>& error, const Mask& where,
                                   const Raster<float>& by, std::span<const double> bounds);
 
-/// How far each cell is from the nearest known one, between centres, in metres; 0 where known.
+/// The distance of each cell to the nearest known one, between centres, in metres. It is 0 at known
+/// cells.
 /// Method: exact Euclidean distances in two passes [felzenszwalb2012].
 /// Cost:   O(cells).
 /// Throws: std::invalid_argument when no cell is known or the spacing is not positive.

@@ -9,8 +9,8 @@
 
 namespace dem {
 
-/// A line in columns and rows of a lattice, whose cell centres are whole numbers. A ring ends where it
-/// begins.
+/// A line in columns and rows of a lattice, whose cell centres are whole numbers. The first and the
+/// last point of a ring are the same.
 struct Breakline {
   std::vector<double> col, row;
 };
@@ -20,19 +20,19 @@ class Breaklines {
  public:
   Breaklines() = default;
 
-  /// Throws std::invalid_argument for a line whose columns and rows differ in number, or that is not
-  /// finite.
+  /// Throws std::invalid_argument for a line that is not finite, or whose columns and rows differ
+  /// in number.
   Breaklines(const std::vector<Breakline>& lines, Size size);
 
   bool empty() const { return segments_.empty(); }
 
-  /// Where lines pass between neighbouring cells, as Dem::breaks.
-  /// Method: a line breaks the edges between cell centres that it crosses, and a centre exactly on a
-  ///         line counts as west of it, or north where it runs along a row: a line that closes off an
-  ///         area leaves no way out over unbroken edges.
+  /// Where lines pass between neighbouring cells, in the form of Dem::breaks.
+  /// Method: a line breaks the edges between cell centres that it crosses. A centre exactly on a
+  ///         line counts as west of it, or as north of it where the line runs along a row. A line
+  ///         that encloses an area therefore leaves no way out over unbroken edges.
   const Mask& breaks() const { return breaks_; }
 
-  /// Whether a line passes between the centre of a cell and a place in it, (dx, dy) from the centre.
+  /// Whether a line passes between the centre of a cell and the point (dx, dy) from the centre.
   bool between(int col, int row, double dx, double dy) const;
 
  private:
@@ -47,11 +47,13 @@ class Breaklines {
   std::vector<std::pair<std::uint64_t, std::uint32_t>> in_cell_;  ///< cell, segment; sorted
 };
 
-/// Whether an edge between two cells of the block [col, col + width) x [row, row + height) is broken.
+/// Whether an edge between two cells of the block [col, col + width) x [row, row + height) is
+/// broken.
 /// `breaks` may be empty.
 bool is_broken(const Mask& breaks, int col, int row, int width, int height);
 
-/// The cells that hang together with no known cell, walled in by broken edges; none without breaks.
+/// The cells that are connected to no known cell, because broken edges enclose them. Without breaks
+/// there are none.
 Mask cells_closed_off(const Mask& known, const Mask& breaks);
 
 }  // namespace dem

@@ -1,5 +1,5 @@
 #pragma once
-// Where a terrain that is made from nothing shall lie.
+// Where the cells of a generated terrain lie.
 
 #include <vector>
 
@@ -7,27 +7,29 @@
 
 namespace dem {
 
-/// The cells of a terrain to be made.
+/// The cells of a terrain that is to be generated.
 struct Canvas {
   Size size{1025, 1025};
   Spacing spacing{30, 30};
   GeoRef ref;
 
-  /// Metres east of the CRS's origin of column `col`, and north of it of row `row`: places, not
-  /// cells, so that a part of a terrain, or the same terrain in finer cells, has the same heights.
+  /// The distance of column `col` east, and of row `row` north, of the CRS's origin, in metres.
+  /// A generator uses these places and not the cells. A part of a terrain, or the same terrain with
+  /// smaller cells, therefore has the same heights.
   double east_m(int col) const;
   double north_m(int row) const;
 };
 
-/// A control point of a ridge that a user drew, in cells; the ridge is 2 width_m wide at its foot.
+/// A control point of a ridge that a user drew. Its place is in cells. The foot of the ridge is 2
+/// width_m wide.
 struct RidgePoint {
   double col = 0, row = 0;
   double height_m = 0, width_m = 0;
 };
 
-/// What a user drew for a generator to start from.
+/// A drawing by a user, from which a generator starts.
 struct Drawing {
-  Raster<float> grey;  ///< levels from 0 (black) to 1 (white); the canvas has its size
+  Raster<float> grey;  ///< from 0 (black) to 1 (white); it has the size of the canvas
   std::vector<std::vector<RidgePoint>> ridges{};
 };
 
@@ -35,7 +37,7 @@ struct Drawing {
 /// a georeference whose rows run along x and whose columns run along y.
 void check_canvas(const Canvas& canvas);
 
-/// The DEM of heights made on a canvas: every cell is known.
+/// The DEM of generated heights on a canvas. Every cell is known.
 Dem on_canvas(const Canvas& canvas, Raster<float> z);
 
 }  // namespace dem

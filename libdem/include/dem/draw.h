@@ -15,17 +15,17 @@ namespace dem {
 struct HillshadeOptions {
   double azimuth_deg = 315;  ///< where the light comes from, clockwise from north
   double altitude_deg = 45;
-  double exaggeration = 1;        ///< heights are multiplied by it first
-  bool multidirectional = false;  ///< from four sides
+  double exaggeration = 1;        ///< factor for the heights
+  bool multidirectional = false;  ///< light from four sides
 };
 std::vector<Field> fields(HillshadeOptions& options);
 
-/// Hillshade in grey, 0 dark to 255 lit; cells where `known` is 0 (when given) are drawn white.
-/// Method: Lambert shading; slopes by Horn's 3 x 3 differences [horn1981], one-sided at the rim.
-///         Multidirectional: lights 90 and 45 degrees to the left of the azimuth, at it, and 45
-///         degrees to its right, each weighted by the squared sine of the angle between it and the
-///         way the ground falls [mark1992]: light across the slopes, which keeps detail where one
-///         light leaves black or white.
+/// Hillshade in grey, from 0 (dark) to 255 (lit). Cells where `known` is 0 (if given) are white.
+/// Method: Lambert shading. Slopes are Horn's 3 x 3 differences [horn1981], one-sided at the
+///         border. Multidirectional: the lights stand 90 and 45 degrees to the left of the azimuth,
+///         at it, and 45 degrees to its right. Each is weighted by the squared sine of the angle
+///         between it and the direction of steepest descent [mark1992]. Light then comes across the
+///         slopes, and keeps detail where one light leaves black or white.
 /// Throws: std::invalid_argument.
 Raster<std::uint8_t> hillshade(const Raster<float>& z, Spacing spacing,
                                const HillshadeOptions& options = {}, const Mask& known = {},
@@ -38,9 +38,10 @@ struct ReliefOptions {
 };
 std::vector<Field> fields(ReliefOptions& options);
 
-/// Colours by height, from the lowest to the highest known cell, under a hillshade; cells where
-/// `known` is 0 (when given) are drawn white. Level ground has exactly the palette's colour; ground
-/// turned to the light is paler, ground turned away darker and bluer, as the sky lights it.
+/// Colours by height, from the lowest to the highest known cell, under a hillshade. Cells where
+/// `known` is 0 (if given) are white.
+/// Level ground has exactly the colour of the palette. Ground that faces the light is paler. Ground
+/// that faces away from it is darker and bluer, because the sky lights it.
 /// Throws: std::invalid_argument.
 Raster<Rgb> shaded_relief(const Raster<float>& z, Spacing spacing,
                           const ReliefOptions& options = {}, const Mask& known = {},

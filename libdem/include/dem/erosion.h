@@ -25,7 +25,7 @@ struct ErosionOptions {
 };
 std::vector<Field> fields(ErosionOptions& options);
 
-/// What a step left, for pictures on the way: heights with what the water carries above them.
+/// The state after a step, for intermediate pictures: heights, and the water above them.
 struct ErosionFrame {
   int step = 0;
   Raster<float> z;
@@ -40,31 +40,32 @@ struct ErosionFrames {
 
 struct Eroded {
   Raster<float> z;
-  Raster<float> water_m;  ///< depth of the water that stands at the end
+  Raster<float> water_m;  ///< depth of the water at the end
   double before_m3 = 0;   ///< sum of height times cell area, in float64
-  double after_m3 = 0;    ///< the same at the end, settled sediment included
-  double carried_m3 = 0;  ///< sediment that left over the border: before = after + carried
+  double after_m3 = 0;    ///< the same at the end, including settled sediment
+  double carried_m3 = 0;  ///< sediment that left across the border: before = after + carried
 };
 
-/// Wears a terrain down: rain falls, flows to all lower neighbours, takes soil along and drops it;
-/// rock steeper than the talus angle slides.
-/// Method:   [musgrave1989] section 4. In each step a cell passes the water f sum(d_k g_k) on, d_k >=
-///           0 its surface above neighbour k, g_k = (shortest distance) / (distance of k), f at most
-///           1 / (4 sum g_k), so that water levels out and does not swing. It may carry K_c times
-///           that; it lifts K_s of what is missing, drops K_d of what is too much. Soil slides to
-///           each neighbour by c_t / 16 of what the slope exceeds the talus by. Departures: slopes,
-///           not differences; a step digs at most an eighth of the mean drop, and fills at most the
-///           water's depth and an eighth of the mean rise, or towers would grow; the printed signs
-///           of the deposit at v and of c_t are taken as misprints.
-/// Rain:     rain_mm, and rain_mm_per_km for each kilometre above the lowest cell (the paper's
-///           thousandth of the height), every rain_every steps.
-/// Needs:    known cells finite. Unknown cells are outside, behind a wall: nothing flows in or out,
-///           and they stay as they are. A step has no length in years.
-/// Gives:    heights with the suspended sediment settled where it was. With open_border, water and
-///           sediment that reach the rim leave, and the rim is not dug by water.
-/// Cost:     O(cells * steps), 48 bytes a cell. Every cell gathers from its neighbours' old state:
-///           no order, and the same bits for any number of threads.
-/// Throws:   std::invalid_argument, Cancelled.
+/// Erodes a terrain. Rain falls, flows to all lower neighbours, takes soil along and deposits it.
+/// Rock that is steeper than the talus angle slides.
+/// Method: [musgrave1989] section 4. In each step a cell passes on the water f sum(d_k g_k). d_k >=
+///         0 is its surface above that of neighbour k, and g_k = (shortest distance) / (distance of
+///         k). f is at most 1 / (4 sum g_k), so that water levels out and does not oscillate. The
+///         water may carry K_c times that amount. It lifts K_s of what is missing, and drops K_d of
+///         what is too much. Soil slides to each neighbour by c_t / 16 of what the slope exceeds
+///         the talus by. Departures: slopes, not differences. A step digs at most an eighth of the
+///         mean drop, and fills at most the depth of the water and an eighth of the mean rise,
+///         because otherwise towers would grow. The printed signs of the deposit at v and of c_t
+///         are treated as misprints.
+/// Rain:   rain_mm, and rain_mm_per_km for each kilometre above the lowest cell (the paper has a
+///         thousandth of the height), every rain_every steps.
+/// Needs:  known cells that are finite. Unknown cells are outside, behind a wall: nothing flows in
+///         or out, and they do not change. A step has no length in years.
+/// Gives:  heights on which the suspended sediment has settled where it was. With open_border,
+///         water and sediment that reach the border leave, and water does not dig the border cells.
+/// Cost:   O(cells * steps), 48 bytes a cell. Every cell gathers from the old state of its
+///         neighbours, so any number of threads gives the same bits.
+/// Throws: std::invalid_argument, Cancelled.
 Eroded erode(const Dem& dem, const ErosionOptions& options = {}, const Run& run = {},
              const ErosionFrames& frames = {});
 

@@ -1,5 +1,5 @@
 #pragma once
-// Terrain by faulting and collaging [faulting1996]: many simple displacements, added up.
+// Terrain by faulting and collaging [faulting1996]: the sum of many simple displacements.
 
 #include <cstdint>
 #include <vector>
@@ -10,8 +10,8 @@
 
 namespace dem {
 
-/// How displacements are distributed, all with mean 0 and mean square 1 of the step asked for:
-/// +1 or -1, uniform, normal, or two-sided exponential.
+/// How displacements are distributed: +1 or -1, uniform, normal, or two-sided exponential.
+/// All have mean 0 and a mean square of 1, and are scaled by the chosen step.
 enum class StepLaw { equal, uniform, gaussian, exponential };
 
 /// Options of generate_faults.
@@ -24,14 +24,14 @@ struct FaultOptions {
 };
 std::vector<Field> fields(FaultOptions& options);
 
-/// Cuts the canvas along random straight lines; one side of each rises, the other sinks.
-/// Method:   [faulting1996], line faults. The lines are a Poisson process: every direction and every
-///           distance from the centre, out to the corners, is as likely as any other; each step is
-///           relief_m / sqrt(count), so that heights have about that standard deviation. Over
-///           width_m the sides are joined by a ramp (0: a cliff).
-/// Cost:     O(rows * (count + cols)): in each row a fault is one or two entries of a list of
-///           differences, which is summed once. Any number of threads gives the same bits.
-/// Throws:   std::invalid_argument, Cancelled.
+/// Cuts the canvas along random straight lines. One side of each line rises, the other sinks.
+/// Method: [faulting1996], line faults. The lines are a Poisson process: every direction, and every
+///         distance from the centre out to the corners, is equally likely. Each step is relief_m /
+///         sqrt(count), so the standard deviation of the heights is about relief_m. A ramp of
+///         width_m joins the sides (0: a cliff).
+/// Cost:   O(rows * (count + cols)). In each row a fault is one or two entries of a list of
+///         differences, which is summed once. Any number of threads gives the same bits.
+/// Throws: std::invalid_argument, Cancelled.
 Raster<float> generate_faults(const Canvas& canvas, const FaultOptions& options = {},
                               const Run& run = {});
 
@@ -45,21 +45,23 @@ struct GlobeOptions {
 };
 std::vector<Field> fields(GlobeOptions& options);
 
-/// Cuts a sphere along random circles; one side of each rises, the other sinks.
-/// Method:   [faulting1996], faults along great circles, all directions alike. Great circles make
-///           every mountain the mirror image of a deep on the far side; with off_centre > 0 the
-///           planes of the circles lie up to so many radii from the centre, and it is not.
-/// Needs:    a canvas whose georeference is degrees of longitude and latitude, of any part of the
-///           globe.
-/// Gives:    heights of the sphere at the cell centres: no seam at the antimeridian, one height at
-///           a pole.
-/// Cost:     O(rows * (count + cols)), as generate_faults.
-/// Throws:   std::invalid_argument, Cancelled.
+/// Cuts a sphere along random circles. One side of each circle rises, the other sinks.
+/// Method: [faulting1996], faults along great circles in all directions alike. Great circles make
+///         every mountain the mirror image of a deep on the opposite side of the globe. With
+///         off_centre > 0 the planes of the circles lie up to off_centre radii from the centre,
+///         which removes this symmetry.
+/// Needs:  a canvas whose georeference is degrees of longitude and latitude, of any part of the
+///         globe.
+/// Gives:  heights of the sphere at the cell centres. There is no seam at the antimeridian, and a
+///         pole has one height.
+/// Cost:   O(rows * (count + cols)), as for generate_faults.
+/// Throws: std::invalid_argument, Cancelled.
 Raster<float> generate_globe(const Canvas& canvas, const GlobeOptions& options = {},
                              const Run& run = {});
 
-/// What is pasted: q is the squared distance from the centre over the squared radius.
-///   disc 1 and rectangle 1 inside; cone 1 - sqrt(q); hump (1 - q)^2; crater 1 / (1 + q), everywhere
+/// The height of a pasted shape. q is the squared distance from the centre over the squared radius.
+///   disc and rectangle: 1 inside; cone: 1 - sqrt(q); hump: (1 - q)^2;
+///   crater: 1 / (1 + q), everywhere
 enum class CollageShape { disc, rectangle, cone, crater, hump };
 
 enum class CollageSign { both, up, down };
@@ -81,13 +83,13 @@ struct CollageOptions {
 std::vector<Field> fields(CollageOptions& options);
 
 /// Pastes discs, rectangles, cones, craters or elliptical humps of random place, size and height.
-/// Method:   [faulting1996]; its crater H F / (F + x^2 + y^2) has F = radius^2. Radii r have the
-///           density r^-size_exponent; heights are steps of step_m (r / radius_max_m)^growth; shapes
-///           are up to `aspect` times as long as wide (rectangles along the axes, others turned).
-///           Centres lie as densely up to radius_max_m outside the canvas as on it.
-/// Cost:     discs and rectangles O(rows * count + cells), by differences as generate_faults; cones
-///           and humps O(their cells); craters O(count * cells).
-/// Throws:   std::invalid_argument, Cancelled.
+/// Method: [faulting1996]; its crater H F / (F + x^2 + y^2) has F = radius^2. Radii r have the
+///         density r^-size_exponent. Heights are steps of step_m (r / radius_max_m)^growth. Shapes
+///         are up to `aspect` times as long as wide. Rectangles lie along the axes, other shapes
+///         are rotated. The centres are as dense up to radius_max_m outside the canvas as on it.
+/// Cost:   discs and rectangles O(rows * count + cells), by differences as in generate_faults;
+///         cones and humps O(their cells); craters O(count * cells).
+/// Throws: std::invalid_argument, Cancelled.
 Raster<float> generate_collage(const Canvas& canvas, const CollageOptions& options = {},
                                const Run& run = {});
 

@@ -1,5 +1,5 @@
 #pragma once
-// The table of terrain generators: names -> functions, as dem/methods.h has those of fill methods.
+// The table of terrain generators: names and functions. dem/methods.h has that of fill methods.
 
 #include <functional>
 #include <string>
@@ -20,11 +20,11 @@ struct Generator {
   std::string citation;  ///< key in REFERENCES.md
   std::vector<FieldInfo> fields;
   std::vector<Preset> presets;
-  std::string image;   ///< what the image shows that it starts from; "" when it takes none
+  std::string image;   ///< what its input image shows; "" when it takes none
   bool globe = false;  ///< whether the canvas is a grid of degrees on the whole Earth
 
-  /// Makes a terrain; all its cells are known. The drawing is empty when the generator takes none.
-  /// Throws std::invalid_argument for bad settings, sizes or drawings, Cancelled.
+  /// Makes a terrain whose cells are all known. The drawing is empty when the generator takes none.
+  /// Throws std::invalid_argument for bad settings, sizes or drawings; Cancelled.
   std::function<Dem(const Canvas&, const Drawing&, const Settings&, const Run&)> generate;
 };
 
@@ -76,13 +76,13 @@ Generator make_image_generator(std::string name, std::string summary, std::strin
 
 const std::vector<Generator>& generators();
 
-/// A generator with its preset's settings put before the caller's.
+/// A generator with its settings: those of the preset come before those of the caller.
 struct ChosenGenerator {
   const Generator* generator = nullptr;
   Settings settings;
 };
 
-/// Finds "noise" or "noise:ridged". Throws std::invalid_argument that lists the names there are.
+/// Finds "noise" or "noise:ridged". Throws std::invalid_argument that lists the existing names.
 ChosenGenerator find_generator(std::string_view name);
 
 }  // namespace dem

@@ -7,9 +7,11 @@
 namespace dem {
 
 struct GriddingOptions {
-  /// So many times the surface is corrected by what it misses the points by, each a fill of its own.
+  /// How many times the surface is corrected by what it misses the points by. Each is a fill of its
+  /// own. [0, 100]
   int passes = 1;
 };
+std::vector<Field> fields(GriddingOptions& options);
 
 /// What a surface is at the points it was made from.
 struct Misfit {
@@ -24,11 +26,11 @@ struct Gridded {
 
 /// Fills the cells without points by a method of a table, and lets the surface pass through the
 /// points off the centre of their cells.
-/// Method:   deferred correction: what the filled surface (cubic convolution between cells) misses a
-///           point by is added to the height of the point's cell, up to three times what the plane
-///           of bin_points moved it by; then the rest is filled anew.
-///           Points with a sigma, and the method `spline`: each cell's noise is its sigma; the
-///           springs' scale comes from a first solve, and the cells return smoothed.
+/// Method:   deferred correction: what the filled surface (cubic convolution between cells) misses
+///           a point by is added to the height of the point's cell, up to three times what the
+///           plane of bin_points moved it by; then the rest is filled again.
+///           Points with a sigma, and a method that has FillMethod::fill_noisy: each cell's noise
+///           is its sigma, and the cells return smoothed.
 /// Gives:    cells with a point on their centre bit for bit (unless points have a sigma).
 /// Throws:   std::invalid_argument, Cancelled.
 Gridded fill_points(const Binned& binned, const ChosenMethod& method,

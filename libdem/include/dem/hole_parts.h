@@ -1,5 +1,5 @@
 #pragma once
-// The holes of a raster that is looked at part by part, in any order and on any machine.
+// The holes of a raster that is scanned part by part, in any order and on any machine.
 
 #include <cstddef>
 #include <vector>
@@ -8,27 +8,27 @@
 
 namespace dem {
 
-/// A known cell beside a hole.
+/// A known cell next to a hole.
 struct RimCell {
   int row = 0, col = 0;
   float z = 0;
 };
 
-/// What one part of a raster tells of its holes; places are in cells of the raster.
+/// What one part of a raster says about its holes. Places are in cells of the raster.
 struct HolePart {
-  std::vector<Hole> holes;    ///< those that lie in this part alone: they are complete
-  std::vector<CellRun> runs;  ///< this part's cells of all others, row by row
-  std::vector<RimCell> rim;   ///< known cells beside those runs
+  std::vector<Hole> holes;    ///< complete holes, which lie in this part alone
+  std::vector<CellRun> runs;  ///< cells in this part of all other holes, row by row
+  std::vector<RimCell> rim;   ///< known cells next to those runs
   std::size_t known_cells = 0;
 };
 
-/// Looks at one part of a raster. Parts are boxes that cover the raster and do not overlap.
-/// `dem`: the cells of with_ring(part, raster), so that what touches the part from outside is seen.
-/// `spacing`: of each row of the raster.
+/// Scans one part of a raster. Parts are boxes that cover the raster and do not overlap.
+/// `dem` has the cells of with_ring(part, raster), so that cells next to the part are seen.
+/// `spacing` has one entry for each row of the raster.
 HolePart scan_part(const Dem& dem, const Box& part, Size raster,
                    const std::vector<Spacing>& spacing);
 
-/// A box with the ring of cells around it, as far as the raster goes.
+/// A box with the ring of cells around it, clipped to the raster.
 Box with_ring(const Box& box, Size raster);
 
 /// The holes of the raster, from all its parts.

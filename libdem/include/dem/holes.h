@@ -154,6 +154,7 @@ struct HolePatch {
   /// Of each hole: how many cells come from method, guide, water, and how many are left.
   std::vector<std::array<std::uint64_t, 4>> cells_by_origin;
   std::vector<Figure> report;  ///< what the method says of the window
+  bool contour_lines = false;  ///< the method found contour lines in the window
   double seconds = 0;
 };
 
@@ -175,9 +176,9 @@ struct HoleWork {
 
 /// Fills the holes window by window: small windows side by side, large ones one after another on
 /// all threads. `read` and `take` are called from the calling thread only.
-/// Guides:  the method fills z - guide instead of z (a delta surface), and the guide is added again:
-///          no step at the rim, no bias. Each hole takes the guide, or none, that finds hidden rim
-///          cells best; a guide that does not cover the hole is not asked.
+/// Guides:  the method fills z - guide instead of z (a delta surface), and the guide is added
+///          again: no step at the rim, no bias. Each hole takes the guide, or none, that finds
+///          hidden rim cells best; a guide that does not cover the hole is not asked.
 /// Water:   cells of water in a hole lie flat, at a tenth of the known heights beside them (the
 ///          lowest rim of the hole where none is); their shore stays above.
 /// Throws:  what the three throw, Cancelled.

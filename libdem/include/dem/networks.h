@@ -1,5 +1,5 @@
 #pragma once
-// Ridges and rivers first, terrain after: skeletons of known cells, and the terrain around them.
+// Ridges and rivers first: skeletons of known cells, and the terrain around them.
 
 #include <cstdint>
 #include <vector>
@@ -13,14 +13,14 @@
 
 namespace dem {
 
-/// A skeleton DEM: its known cells are those of ridges and rivers, and nothing else.
+/// A skeleton DEM. Its known cells are those of ridges and rivers only.
 struct Skeleton {
   Dem dem;
-  Raster<CellKind> kinds;  ///< ridge, river; plain where nothing is known
+  Raster<CellKind> kinds;  ///< ridge or river; plain where unknown
   std::vector<River> rivers;
 };
 
-/// Options of grow_skeleton. Lengths are parts of the map's longer side where they are no cells.
+/// Options of grow_skeleton. Lengths that are not in cells are parts of the longer side of the map.
 struct NetworkOptions {
   int ridges = 12;
   int springs = 120;
@@ -39,24 +39,25 @@ struct NetworkOptions {
 std::vector<Field> fields(NetworkOptions& options);
 
 /// Grows ridges and the rivers that drain them, on an empty map.
-/// Method:   [belhadj2005] section 2. Couples of ridge particles walk apart on fractional Brownian
-///           paths, their altitude a Gaussian of the way gone, until it is next to nothing or they
-///           meet another ridge. Their Gaussian cross-sections, blended (the highest counts), are
-///           the ground that river particles run down with inertia and friction. One that meets the
-///           path of another stops; the other goes on from there with both velocities and masses.
-///           Rivers that end inside the map are dropped. Departures: the ground is held on 257
-///           nodes a side, stands on a dome, and its logarithm pulls the particles, its basins
-///           filled to their outlets; a path that crosses itself loses the loop; a river whose
-///           confluence is washed away flows on; an altitude along a river is the lowest so far,
-///           less the bed's depth, which grows with the root of the mass.
-/// Gives:    along every river elevations never rise toward the mouth. A larger map of the same
-///           shape shows the same ridges in more detail.
-/// Cost:     O(cells), most of it to clear the rasters.
-/// Throws:   std::invalid_argument, also when no river leaves the map; Cancelled.
+/// Method: [belhadj2005] section 2. Pairs of ridge particles move apart on fractional Brownian
+///         paths. Their altitude is a Gaussian of the distance covered, until it is nearly 0 or
+///         they meet another ridge. Their Gaussian cross-sections, blended (the highest counts),
+///         are the ground. River particles run down this ground with inertia and friction. A
+///         particle that meets the path of another stops, and the other continues from there with
+///         the velocities and masses of both. Rivers that end inside the map are dropped.
+///         Departures: the ground has 257 nodes a side and stands on a dome. Its logarithm pulls
+///         the particles, after its basins were filled to their outlets. A path that crosses itself
+///         loses the loop. A river whose confluence is removed continues to flow. The altitude
+///         along a river is the lowest so far, minus the depth of the bed, which grows with the
+///         square root of the mass.
+/// Gives:  along every river elevations never rise toward the mouth. A larger map of the same shape
+///         shows the same ridges in more detail.
+/// Cost:   O(cells), most of it to clear the rasters.
+/// Throws: std::invalid_argument, also when no river leaves the map; Cancelled.
 Skeleton grow_skeleton(Size size, Spacing spacing, const NetworkOptions& options = {},
                        const Run& run = {});
 
-/// How heights are found on lines that a user drew.
+/// Where the heights of lines that a user drew come from.
 enum class LineHeights { generated, given };
 
 /// Options of read_skeleton.
@@ -69,20 +70,20 @@ struct SketchLinesOptions {
 };
 std::vector<Field> fields(SketchLinesOptions& options);
 
-/// Reads ridges and rivers off a drawing: white (from 0.98) is nothing, the lighter half of the
-/// greys [0.5, 0.98) are ridges, the darker half [0, 0.5) rivers.
-/// Heights:  given: the grey, from low_m (black) to high_m (white); a river cell that lies lower
-///           than the next one toward its mouth is raised to it. generated: rivers rise from their
-///           mouths by river_slope, ridges stand above the nearest river or edge of the map by
-///           ridge_slope times its distance, up to high_m.
-/// Mouths:   the river cells on the map's edge; of a river that does not reach it, the cell nearest
-///           to it.
-/// Gives:    along every river elevations never rise toward the mouth.
-/// Throws:   std::invalid_argument when the drawing has no line, or no white; Cancelled.
+/// Reads ridges and rivers from a drawing. White (from 0.98) is empty. The lighter half of the
+/// greys, [0.5, 0.98), are ridges, the darker half, [0, 0.5), are rivers.
+/// Heights: given: the grey, from low_m (black) to high_m (white). A river cell that is lower than
+///          the next one toward its mouth is raised to it. generated: rivers rise from their mouths
+///          by river_slope. Ridges stand above the nearest river or edge of the map by ridge_slope
+///          times its distance, up to high_m.
+/// Mouths:  the river cells on the edge of the map. If a river does not reach it, its mouth is the
+///          cell nearest to it.
+/// Gives:   along every river elevations never rise toward the mouth.
+/// Throws:  std::invalid_argument when the drawing has no line, or no white; Cancelled.
 Skeleton read_skeleton(const Raster<float>& drawing, Spacing spacing,
                        const SketchLinesOptions& options = {}, const Run& run = {});
 
-/// What makes a terrain of a skeleton.
+/// The method that fills the terrain around a skeleton.
 enum class SkeletonFill { mcmd, mdi };
 
 /// Options of fill_skeleton.
@@ -102,24 +103,24 @@ struct SkeletonFillOptions {
 };
 std::vector<Field> fields(SkeletonFillOptions& options);
 
-/// Makes a terrain of a skeleton, whose cells stay as they are, bit for bit.
-/// Method:   `mcmd`, the default: [belhadj2007] figure 11, with I and I_bu of their own for ridges
-///           and rivers; `mdi`: [belhadj2005], MDI then MD. MCMD is the default because its bends
-///           make ridges sharp and valleys round; MDI's heights between lines are plain means.
-/// Needs:    at least one known cell.
-/// Cost:     as fill_mcmd, fill_mdi.
-/// Throws:   std::invalid_argument, Cancelled.
+/// Fills the terrain around a skeleton, whose cells stay the same, bit for bit.
+/// Method: `mcmd`, the default: [belhadj2007] figure 11, with separate I and I_bu for ridges and
+///         rivers. `mdi`: [belhadj2005], MDI then MD. MCMD is the default because its bends make
+///         ridges sharp and valleys round. The heights of MDI between lines are plain means.
+/// Needs:  at least one known cell.
+/// Cost:   that of fill_mcmd or fill_mdi.
+/// Throws: std::invalid_argument, Cancelled.
 Raster<float> fill_skeleton(const Skeleton& skeleton, const SkeletonFillOptions& options = {},
                             const Run& run = {});
 
-/// Options of generate_ridges. The seed of the network is that of the fill, too.
+/// Options of generate_ridges. The seed of the network is also that of the fill.
 struct RidgesOptions {
   NetworkOptions network;
   SkeletonFillOptions fill;
 };
 std::vector<Field> fields(RidgesOptions& options);
 
-/// A terrain around ridges and rivers that grow by chance: fill_skeleton of grow_skeleton.
+/// A terrain around random ridges and rivers: fill_skeleton of grow_skeleton.
 Raster<float> generate_ridges(const Canvas& canvas, const RidgesOptions& options = {},
                               const Run& run = {});
 

@@ -1,6 +1,6 @@
 #pragma once
-// Colours for heights. In each palette higher is lighter, so that height can be told by lightness
-// alone: on grey paper, and with any colour vision.
+// Colours for heights. In each palette higher ground is lighter. Heights can therefore be compared
+// by lightness alone, in grey print and with any colour vision.
 
 #include <array>
 #include <cstdint>
@@ -16,14 +16,15 @@ using Colour = std::array<double, 3>;
 
 enum class Palette { atlas, alpine, desert, dusk, paper };
 
-/// Name and one line on each palette, in the order of the enumerators.
+/// Name and one line of description of each palette, in the order of the enumerators.
 struct PaletteInfo {
   std::string name, doc;
 };
 const std::vector<PaletteInfo>& palettes();
 std::vector<std::string> palette_names();
 
-/// The colour of ground from the lowest (0) to the highest (1); beyond: that of the nearer end.
+/// The colour of ground from the lowest (0) to the highest (1). Values outside have the colour of
+/// the nearest end.
 Colour palette_colour(Palette palette, double height);
 
 /// Colours for heights in metres.

@@ -9,6 +9,7 @@
 
 #include "dem/breaklines.h"
 #include "dem/dem.h"
+#include "dem/fields.h"
 #include "dem/run.h"
 
 namespace dem {
@@ -39,11 +40,12 @@ struct BinOptions {
   /// cells around; false: it is taken as it is.
   bool plane = true;
   /// Cells whose height has nothing to do with that of the cells around stay unknown: farther than
-  /// `outliers` times the spread of the 24 nearest from their median; 0: none do. Spread: the larger
-  /// of 1.4826 median |z - median| and its median over all cells, at least 0.1 m. A cell with fewer
-  /// than five others within 32 cells is never taken for an outlier.
+  /// `outliers` times the spread of the 24 nearest from their median; 0: none do. Spread: the
+  /// larger of 1.4826 median |z - median| and its median over all cells, at least 0.1 m. A cell
+  /// with fewer than five others within 32 cells is never taken for an outlier.
   double outliers = 0;
 };
+std::vector<Field> fields(BinOptions& options);
 
 /// A point that lay off the centre of its cell (several points: their centroid).
 struct OffCentre {
@@ -73,7 +75,8 @@ struct Binned {
 /// cell of those stretches of the lattice where points are, and a buffer.
 class PointBins {
  public:
-  /// `lines`: no plane reaches across one, and a point that one parts from its cell's centre is left
+  /// `lines`: no plane reaches across one, and a point that one parts from its cell's centre is
+  ///          left
   /// out. The DEM has their breaks.
   /// Throws std::invalid_argument for a lattice without cells or a degenerate georeference.
   explicit PointBins(Lattice lattice, const BinOptions& options = {}, Breaklines lines = {});
@@ -95,11 +98,11 @@ class PointBins {
 };
 
 /// Brings points onto a lattice: each cell that holds points becomes known.
-/// Method:   the cell's points are combined (mean: weighted by 1 / sigma^2, or by weight), height and
-///           position alike; then the height goes to the cell's centre along the plane through this
-///           centroid that fits those of the cells around best (weights 1 / (distance^2 + 1)^2, in
-///           cells), as far as chance does not explain its slope: where the heights around are noise,
-///           it stays.
+/// Method:   the cell's points are combined (mean: weighted by 1 / sigma^2, or by weight), height
+///           and position alike; then the height goes to the cell's centre along the plane through
+///           this centroid that fits those of the cells around best (weights 1 / (distance^2 +
+///           1)^2, in cells), as far as chance does not explain its slope: where the heights around
+///           are noise, it stays.
 /// Exact on: points on a cell's centre (to 1e-6 of a cell); planes.
 /// Gives:    sigma = 1 / root of the sum of 1 / sigma^2 for means, else that of the point chosen.
 /// Cost:     O(points + cells). Any number of threads gives the same bits.

@@ -12,7 +12,7 @@
 
 namespace dem {
 
-/// Memory for `bytes` bytes of cells; large blocks ask the system for large pages, which are ready
+/// Memory for `bytes` bytes of cells. Large blocks use large pages of the system, which are ready
 /// sooner. Throws std::bad_alloc.
 void* allocate_cells(std::size_t bytes);
 void free_cells(void* cells) noexcept;
@@ -78,7 +78,7 @@ class Raster {
   Raster() = default;
   explicit Raster(Size size, T value = {}) : size_(size), cells_(size.cells(), value) {}
 
-  /// A raster whose cells are all to be written before they are read: nothing is spent on zeros.
+  /// A raster whose cells are all written before they are read: no time is spent on zeros.
   static Raster unset(Size size) {
     Raster raster;
     raster.size_ = size;
@@ -122,7 +122,7 @@ class Raster {
 /// One byte a cell: 1 = known (measured, or chosen), 0 = unknown. The same polarity everywhere.
 using Mask = Raster<std::uint8_t>;
 
-/// How many cells of the mask are set.
+/// The number of cells that are set in the mask.
 inline std::size_t count(const Mask& mask) {
   std::size_t n = 0;
   for (auto m : mask.cells()) n += m != 0;

@@ -1,7 +1,7 @@
 #pragma once
 // Perspective views of terrain by grid tracing [musgrave1989].
 //
-// Coordinates are metres: x east, y north, z up. The centre of cell (0, 0) is x = y = 0, so that the
+// Coordinates are metres: x east, y north, z up. The centre of cell (0, 0) is x = y = 0, so the
 // cell (col, row) stands at x = col * dx_m, y = -row * dy_m, z = its elevation.
 
 #include <limits>
@@ -26,7 +26,7 @@ constexpr Vec3 operator-(Vec3 a, Vec3 b) { return {a.x - b.x, a.y - b.y, a.z - b
 constexpr Vec3 operator*(double s, Vec3 v) { return {s * v.x, s * v.y, s * v.z}; }
 constexpr double dot(Vec3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
-/// The points origin + t * direction for 0 <= t <= t_max. The direction has any length but zero.
+/// The points origin + t * direction for 0 <= t <= t_max. The direction has any length except 0.
 struct Ray {
   Vec3 origin;
   Vec3 direction;
@@ -41,37 +41,37 @@ struct Hit {
 };
 
 /// A surface of two triangles between each four neighbouring cells, split from north west to south
-/// east, and the tree that rays find it with. A triangle with an unknown corner is a hole that rays
-/// pass; a square with one unknown corner keeps the triangle of the other three.
+/// east, with the tree in which rays find it. A triangle with an unknown corner is a hole that rays
+/// pass. A square with one unknown corner keeps the triangle of the other three.
 ///
 /// Method: grid tracing [musgrave1989] section 5: a DDA through squares, over a tree of 4 x 4 grids
-///         that hold the lowest and the highest ground below them. Departures: no stack, the walk
-///         goes up a level when it leaves a grid; a hit is a change of sign of the ray's height above
-///         ground along the walk, so that no ray slips through between two triangles; both sides of
-///         the ground stop a ray.
-/// Needs:  at least 2 x 2 cells. The dem may go once the surface is made.
-/// Gives:  heights multiplied by `exaggeration`; every z here is one of these.
-/// Cost:   5 bytes a cell; a ray visits O(log cells) grids where the ground is far below it, and
+///         that hold the lowest and the highest ground below them. Departures: there is no stack,
+///         and the walk goes up a level when it leaves a grid. A hit is a change of sign of the
+///         height of the ray above ground along the walk, so no ray passes between two triangles.
+///         Both sides of the ground stop a ray.
+/// Needs:  at least 2 x 2 cells. The DEM may be destroyed once the surface exists.
+/// Gives:  heights multiplied by `exaggeration`. Every z of this class is such a height.
+/// Cost:   5 bytes a cell. A ray visits O(log cells) grids where the ground is far below it, and
 ///         never more than O(sqrt(cells)) squares.
-/// Throws: std::invalid_argument for fewer cells, a spacing or an exaggeration that is not > 0, or a
-///         known height that is not finite.
+/// Throws: std::invalid_argument for fewer cells, a spacing or an exaggeration that is not > 0, or
+///         a known height that is not finite.
 class Heightfield {
  public:
   explicit Heightfield(const Dem& dem, double exaggeration = 1);
 
-  /// The first point of the ray on the ground; touching counts.
+  /// The first point of the ray on the ground. Touching counts.
   std::optional<Hit> intersect(const Ray& ray) const;
 
-  /// Whether the ground stands in the way: intersect() without the point.
+  /// Whether the ground blocks the ray: intersect() without the point.
   bool blocks(const Ray& ray) const;
 
-  /// The height of the ground below or above (x, y); none in a hole or beside the terrain.
+  /// The height of the ground below or above (x, y); nothing in a hole or outside the terrain.
   std::optional<double> height(double x, double y) const;
 
   Size size() const { return z_.size(); }
   Spacing spacing() const { return spacing_; }
 
-  /// The lowest and the highest ground of the triangles there are; low > high when there are none.
+  /// The lowest and the highest ground of all triangles; low > high when there is no triangle.
   double low() const { return low_; }
   double high() const { return high_; }
 
@@ -92,33 +92,33 @@ class Heightfield {
   double low_ = 0, high_ = 0;
 };
 
-/// What a view shows and from where. Without a camera the whole terrain is seen from outside and
+/// What a view shows, and from where. Without a camera it shows the whole terrain from outside and
 /// above, as a block cut out of the ground: a three-quarter view.
 struct ViewOptions {
   int width = 1600, height = 900;  ///< pixels
-  int samples = 4;                 ///< rays for a pixel
+  int samples = 4;                 ///< number of rays for a pixel
   double azimuth_deg = 305;        ///< where the sun stands, clockwise from north
   double altitude_deg = 35;
   double exaggeration = 0;  ///< 0: 1 with a camera, else chosen so that the relief shows
-  double heading_deg = 25;  ///< where the three-quarter view looks, clockwise from north
-  double tilt_deg = 32;     ///< and how far down
+  double heading_deg = 25;  ///< direction of the three-quarter view, clockwise from north
+  double tilt_deg = 32;     ///< how far it looks down
   double fov_deg = 32;      ///< angle across the picture's width
-  double haze = 1;          ///< 0: clear air; 1: what is a terrain's length away fades, a little
-                            ///< in a three-quarter view, most of it for a camera of its own
+  double haze = 1;          ///< 0: clear air; 1: ground that is the length of the terrain away
+                            ///< fades: a little in a three-quarter view, mostly for a camera
   bool shadows = true;
   Palette palette = Palette::atlas;
   bool sea = false;  ///< heights at or below 0 are water
 
-  /// Where the camera stands and what it looks at, before heights are exaggerated. Without a
-  /// target it looks at the middle of the terrain.
+  /// Where the camera stands and what it looks at, before heights are exaggerated. Without a target
+  /// it looks at the middle of the terrain.
   std::optional<Vec3> camera = {}, target = {};
 };
 std::vector<Field> fields(ViewOptions& options);
 
-/// A pinhole camera; x and y of a picture run from -1 to 1, to the right and upwards.
+/// A pinhole camera. x and y of a picture run from -1 to 1, to the right and upwards.
 struct Camera {
   Vec3 position, forward;  ///< forward has length 1
-  Vec3 right, up;          ///< to the picture's rim
+  Vec3 right, up;          ///< to the edges of the picture
 
   Ray ray(double x, double y) const { return {position, forward + x * right + y * up}; }
 };
@@ -134,12 +134,14 @@ struct View {
 View make_view(const Dem& dem, const ViewOptions& options = {});
 
 /// A perspective view.
-/// Method: grid tracing [musgrave1989]. The ground has the palette's colours and normals that turn
-///         evenly from cell to cell; it is lit by the sun, whose shadows are traced, and by the part
-///         of the sky that each cell sees over its horizon in 16 directions. Air takes colour away
-///         exponentially with the way through it. The terrain stands on a plain; its cut sides are
-///         drawn. Sub-pixel positions are hashes of the pixel: no number of threads changes a bit.
-/// Needs:  2 x 2 cells. Unknown cells are holes through which the inside of the block is seen.
+/// Method: grid tracing [musgrave1989]. The ground has the colours of the palette and normals that
+///         change evenly from cell to cell. The sun lights it, and its shadows are traced. In
+///         addition, the part of the sky that each cell sees above its horizon in 16 directions
+///         lights it. Air removes colour exponentially with the distance through it. The terrain
+///         stands on a plain, and its cut sides are drawn. Sub-pixel positions are hashes of the
+///         pixel: the number of threads does not change a bit.
+/// Needs:  at least 2 x 2 cells. Unknown cells are holes through which the inside of the block is
+///         seen.
 /// Throws: std::invalid_argument, Cancelled.
 Raster<Rgb> render_view(const Dem& dem, const ViewOptions& options = {}, const Run& run = {});
 

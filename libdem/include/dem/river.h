@@ -1,5 +1,5 @@
 #pragma once
-// A river as the generators draw it.
+// A river of a generator.
 
 #include <vector>
 
@@ -7,11 +7,11 @@
 
 namespace dem {
 
-/// A river, from its source to its mouth; each cell is a neighbour of the one before.
+/// A river, from its source to its mouth. Each cell is a neighbour of the one before.
 struct River {
-  std::vector<Cell> path;  ///< the last cell is at the sea or the map's edge, or on another river
+  std::vector<Cell> path;  ///< the last cell is at the sea, at the map's edge, or on a river
   int joins = -1;          ///< the number of the river that it joins; -1: none
-  double mass = 1;         ///< how many sources feed it
+  double mass = 1;         ///< number of sources that feed it
 };
 
 }  // namespace dem

@@ -1,5 +1,5 @@
 #pragma once
-// RiverLand: rivers grown into painted land, and terrain that drains into them.
+// RiverLand: rivers that grow into painted land, and terrain that drains into them.
 
 #include <cstdint>
 #include <vector>
@@ -12,18 +12,18 @@
 
 namespace dem {
 
-/// What a user painted.
+/// The land that a user painted.
 struct Land {
   Mask land;     ///< 1: land, 0: sea; all of it may be land
   Mask rocks{};  ///< 1: a patch of rocky outcrops; empty: none
   std::vector<std::vector<RidgePoint>> ridges{};
 };
 
-/// How the ground rises from a river or coast: evenly; from a flat floor; from steep banks; as the
-/// walls of a trough; behind a plain as a cliff; in steps.
+/// How the ground rises from a river or coast: evenly; from a flat floor; from steep banks; like
+/// the walls of a trough; as a cliff behind a plain; in steps.
 enum class SlopeProfile { linear, concave, convex, trough, cliffs, terraces };
 
-/// Options of make_riverland, after the steps that they govern.
+/// Options of make_riverland, grouped by the steps that they control.
 struct RiverLandOptions {
   // Rivers
   int mouths = 24;
@@ -61,29 +61,30 @@ std::vector<Field> fields(RiverLandOptions& options);
 struct RiverLand {
   Raster<float> z;  ///< 0 at sea and along its coast
   std::vector<River> rivers;
-  Mask wet;  ///< cells of rivers, as wide as they are
+  Mask wet;  ///< cells of rivers, over their full width
 };
 
-/// Makes a terrain of painted land.
-/// Method:   [teoh2009]. Mouths at least mouth_distance_m apart; rivers of segments that meander
-///           between them, those of the coast before their tributaries; these from concave banks, in
-///           random order; levels by average
-///           slope, steeper toward the source; PathToRiver pointers and distances with the slope of
-///           each river; maximal cells, their ideal heights smoothed; heights in between linear;
-///           cliffs removed; a slope profile; user ridges; a fractal overlay that leaves rivers as
-///           they are, with rocky outcrops. Departures: where paths from several maximal cells
-///           share a cell, their gradients count in the mean; profiles are applied after the cliffs
-///           are removed, so that they may make some; in the end what the overlay dammed up is
-///           filled to its outlet, so that all land drains.
-/// Gives:    from every land cell a path falls, step by step, to a river or the sea; levels fall
-///           along every river. Map edges count as coast where there is land.
-/// Cost:     O(cells); 40 bytes a cell.
-/// Throws:   std::invalid_argument: no land, no room for a river, a ridge off the land; Cancelled.
+/// Makes a terrain from painted land.
+/// Method: [teoh2009]. Mouths are at least mouth_distance_m apart. Rivers have segments that
+///         meander between them. Those of the coast come before their tributaries, which start at
+///         concave banks, in random order. Levels follow from an average slope that is steeper
+///         toward the source. PathToRiver pointers and distances use the slope of each river. The
+///         ideal heights of maximal cells are smoothed, and heights in between are linear. Then
+///         come the removal of cliffs, a slope profile, user ridges, and a fractal overlay with
+///         rocky outcrops that leaves rivers unchanged. Departures: where paths from several
+///         maximal cells share a cell, their gradients count in the mean. Profiles are applied
+///         after the removal of cliffs, so they may make new ones. In the end, ground that the
+///         overlay dammed up is filled to its outlet, so that all land drains.
+/// Gives:  from every land cell a path falls, step by step, to a river or the sea. Levels fall
+///         along every river. Edges of the map count as coast where they are land.
+/// Cost:   O(cells); 40 bytes a cell.
+/// Throws: std::invalid_argument: no land, no room for a river, a ridge outside the land;
+///         Cancelled.
 RiverLand make_riverland(const Land& land, Spacing spacing, const RiverLandOptions& options = {},
                          const Run& run = {});
 
-/// Land as an image shows it: black (below 0.25) is sea, white (from 0.75) land, and the greys
-/// between land with rocky outcrops.
+/// The land of an image: black (below 0.25) is sea, white (from 0.75) is land, and the greys
+/// between are land with rocky outcrops.
 Land read_land(const Raster<float>& drawing);
 
 /// An island that fills the map, with a ragged coast.
@@ -103,7 +104,8 @@ std::vector<Field> fields(GrownLandOptions& options);
 Raster<float> generate_riverland(const Canvas& canvas, const GrownLandOptions& options = {},
                                  const Run& run = {});
 
-/// make_riverland on the land of a drawing, as read_land() sees it, with the drawing's ridges.
+/// make_riverland on the land of a drawing, as read_land() reads it, with the ridges of the
+/// drawing.
 Raster<float> generate_painted_land(const Canvas& canvas, const Drawing& drawing,
                                     const RiverLandOptions& options = {}, const Run& run = {});
 

@@ -7,7 +7,7 @@
 
 namespace dem {
 
-/// Thrown when the progress callback asked to stop. No result, nothing half-done.
+/// Thrown when the progress callback returned false. There is no result.
 class Cancelled : public std::runtime_error {
  public:
   Cancelled() : std::runtime_error("cancelled") {}
@@ -16,8 +16,8 @@ class Cancelled : public std::runtime_error {
 struct Run {
   int threads = 0;  ///< 0: as many as the machine has cores
 
-  /// Called now and then, from the calling thread, with the part done (0 to 1) and what is being
-  /// done; returning false stops the work, which then throws Cancelled.
+  /// Called from time to time, from the calling thread, with the part done (0 to 1) and the name of
+  /// the current step. If it returns false, the work stops and throws Cancelled.
   std::function<bool(double part, std::string_view what)> progress = {};
 
   /// Reports progress; throws Cancelled when the callback returns false.
@@ -25,7 +25,7 @@ struct Run {
     if (progress && !progress(part, what)) throw Cancelled();
   }
 
-  /// The same run, its progress scaled into [from, to]: for a step of a longer work.
+  /// The same run with its progress scaled into [from, to], for a step of a longer task.
   Run part(double from, double to) const {
     Run sub{threads, {}};
     if (progress)

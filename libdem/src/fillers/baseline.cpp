@@ -13,6 +13,7 @@
 #include "numeric/parallel.h"
 
 namespace dem {
+using namespace numeric;
 namespace {
 
 constexpr int kRowsAtOnce = 64;

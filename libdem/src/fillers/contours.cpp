@@ -14,6 +14,7 @@
 #include "numeric/parallel.h"
 
 namespace dem {
+using namespace numeric;
 namespace {
 
 constexpr float infinite = std::numeric_limits<float>::infinity();
@@ -226,8 +227,8 @@ bool are_contour_lines(const Dem& dem, const std::vector<Area>& areas) {
   return between >= least_between * (cells - known);
 }
 
-/// How far a flank of this slope (metres a cell) rises at distance d beyond its line, when it rounds
-/// off to level ground at distance `widest`: a parabola, cut at `most`. Distances in fifths.
+/// How far a flank of this slope (metres a cell) rises at distance d beyond its line, when it
+/// rounds off to level ground at distance `widest`: a parabola, cut at `most`. Distances in fifths.
 double rounded_rise(double slope, int d, int widest, double most) {
   const double x = d / 5., w = std::max(1., widest / 5.);
   const double rise = slope * (x - x * x / (2 * w)), top = slope * w / 2;
@@ -334,25 +335,21 @@ std::size_t hold_worst(const Raster<float>& z, const ContourBounds& bounds, Dem&
   return n;
 }
 
-double figure(const Filled& filled, std::string_view name) {
-  const auto found = std::ranges::find(filled.report, name, &Figure::name);
-  return found == filled.report.end() ? 0 : found->value;
-}
-
 /// The surface through the known cells of `dem` and within bounds. `nugget`: noise of those cells.
 Filled fill_within(const Dem& dem, const ContourBounds& bounds, double nugget,
                    const ContourOptions& options, const Run& run) {
   const double parts = bounds.lines ? options.rounds + 1. : 1;
-  Filled filled = fill_spline(dem, SplineOptions{}, run.part(0, 1 / parts));
+  SplineFilled filled = fill_spline(dem, SplineOptions{}, run.part(0, 1 / parts));
+  filled.contour_lines = bounds.lines;
   filled.report.push_back({"contour_lines", bounds.lines ? 1. : 0., ""});
   if (!bounds.lines) return filled;
 
   // The springs of the first solve. Lines pull; cells held on a bound are met exactly.
   SplineOptions springs;
   springs.parameters = SplineParameters::manual;
-  springs.L1_rows = figure(filled, "L1");
-  springs.L3_rows = figure(filled, "L3");
-  springs.fourth_order = figure(filled, "fourth_order") != 0;
+  springs.L1_rows = filled.L1_rows;
+  springs.L3_rows = filled.L3_rows;
+  springs.fourth_order = filled.fourth_order;
   springs.adaptive_sigma_cells = 1.5;
   springs.nugget = nugget;
   Raster<float> noise(dem.size(), 1);
@@ -398,11 +395,6 @@ Filled fill_contours(const Dem& lines, const Raster<float>& at_centres,
   Dem dem = lines;
   dem.z = at_centres;
   return fill_within(dem, bounds, centre_noise, options, run.part(0.1, 1));
-}
-
-bool on_contour_lines(const std::vector<Figure>& report) {
-  const auto found = std::ranges::find(report, "contour_lines", &Figure::name);
-  return found != report.end() && found->value != 0;
 }
 
 }  // namespace dem

@@ -7,6 +7,7 @@
 #include "numeric/parallel.h"
 
 namespace dem {
+using namespace numeric;
 namespace {
 
 /// Heights and where they are known, with the weights of their squared second differences.

@@ -1,15 +1,17 @@
-// Holes of a raster from its parts. A hole that reaches several parts is scanned anew, from its cells
-// and its rim alone, by the scanner that would have found it in the whole raster: the same sums in
-// the same order.
+// Holes of a raster from its parts. A hole that reaches several parts is scanned anew, from its
+// cells and its rim alone, by the scanner that would have found it in the whole raster: the same
+// sums in the same order.
 
 #include "dem/hole_parts.h"
 
 #include <algorithm>
-#include <numeric>
 #include <span>
 #include <stdexcept>
 
+#include "numeric/union_find.h"
+
 namespace dem {
+using namespace numeric;
 namespace {
 
 bool overlap(const Box& a, const Box& b) {
@@ -69,29 +71,20 @@ std::vector<CellRun> joined_runs(const std::vector<HolePart>& parts) {
   return joined;
 }
 
-std::size_t find(std::vector<std::size_t>& parent, std::size_t i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
-
 /// The runs of each hole: those that touch from row to row, corners included.
 std::vector<std::vector<CellRun>> connected(const std::vector<CellRun>& runs) {
-  std::vector<std::size_t> parent(runs.size());
-  std::iota(parent.begin(), parent.end(), std::size_t{0});
+  UnionFind holes(runs.size());
   for (std::size_t above = 0, i = 0; i < runs.size(); ++i) {
     while (runs[above].row < runs[i].row - 1 ||
            (runs[above].row == runs[i].row - 1 && runs[above].end < runs[i].begin))
       ++above;
-    for (std::size_t a = above; runs[a].row == runs[i].row - 1 && runs[a].begin <= runs[i].end;
-         ++a) {
-      const auto [first, second] = std::minmax({find(parent, a), find(parent, i)});
-      parent[second] = first;
-    }
+    for (std::size_t a = above; runs[a].row == runs[i].row - 1 && runs[a].begin <= runs[i].end; ++a)
+      holes.join(a, i);
   }
   std::vector<std::vector<CellRun>> groups;
   std::vector<std::size_t> group_of(runs.size(), runs.size());
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    std::size_t& group = group_of[find(parent, i)];
+    std::size_t& group = group_of[holes.root(i)];
     if (group == runs.size()) {
       group = groups.size();
       groups.emplace_back();

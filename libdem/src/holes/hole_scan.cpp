@@ -5,9 +5,11 @@
 #include <stdexcept>
 
 #include "dem/holes.h"
-#include "numeric/envelope.h"
+#include "numeric/distance.h"
+#include "numeric/union_find.h"
 
 namespace dem {
+using namespace numeric;
 namespace {
 
 // ---- Greatest distance to data
@@ -15,8 +17,8 @@ namespace {
 constexpr double infinite = Envelope::infinite;
 constexpr std::size_t most_distance_cells = std::size_t{1} << 24;
 
-/// The greatest distance of a hole's cells to a cell outside it, within the raster. The cell nearest
-/// outside is known: any other would belong to the hole.
+/// The greatest distance of a hole's cells to a cell outside it, within the raster. The cell
+/// nearest outside is known: any other would belong to the hole.
 /// Boxes above the limit are looked at in squares of k x k cells, outside where one cell is.
 double greatest_distance(const std::vector<CellRun>& runs, const Box& box, int raster_cols,
                          int raster_rows, Spacing spacing) {
@@ -60,7 +62,7 @@ double greatest_distance(const std::vector<CellRun>& runs, const Box& box, int r
       const double d = d2(col, row);
       line[std::size_t(col)] = std::isinf(d) ? infinite : d;
     }
-    envelope.apply(line, dx);
+    envelope.apply(line, dx * dx);
     for (const double d : line)
       if (d != infinite) greatest = std::max(greatest, d);
   }
@@ -117,11 +119,6 @@ struct TipRun {
   std::size_t hole;
 };
 
-std::size_t find(std::vector<std::size_t>& parent, std::size_t i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
-
 }  // namespace
 
 class HoleScanner::Scan {
@@ -144,14 +141,13 @@ class HoleScanner::Scan {
       runs.push_back({int(begin - known.begin()), int(end - known.begin()), open_.size()});
       open_.push_back(new_hole(runs.back(), marked));
     }
-    std::vector<std::size_t> parent(open_.size());
-    for (std::size_t i = 0; i < parent.size(); ++i) parent[i] = i;
+    UnionFind holes(open_.size());
     for (std::size_t a = 0, b = 0; a < tips_.size() && b < runs.size();) {
       if (tips_[a].begin <= runs[b].end && runs[b].begin <= tips_[a].end) {
-        const std::size_t i = find(parent, tips_[a].hole), j = find(parent, runs[b].hole);
+        const std::size_t i = holes.root(tips_[a].hole), j = holes.root(runs[b].hole);
         if (i != j) {
           merge(open_[std::min(i, j)], open_[std::max(i, j)]);
-          parent[std::max(i, j)] = std::min(i, j);
+          holes.join(i, j);
         }
       }
       tips_[a].end < runs[b].end ? ++a : ++b;
@@ -162,18 +158,18 @@ class HoleScanner::Scan {
     //     o # # o
     //     o o o o
     for (const TipRun& run : runs) {
-      OpenHole& hole = open_[find(parent, run.hole)];
+      OpenHole& hole = open_[holes.root(run.hole)];
       if (run.begin > 0) hole.add_rim(double(z[std::size_t(run.begin) - 1]));
       if (run.end < cols_) hole.add_rim(double(z[std::size_t(run.end)]));
       if (row_ > 0) add_rim(hole, run, known_above_, z_above_);
     }
-    for (const TipRun& tip : tips_) add_rim(open_[find(parent, tip.hole)], tip, known, z);
+    for (const TipRun& tip : tips_) add_rim(open_[holes.root(tip.hole)], tip, known, z);
 
     // What the row did not touch is complete.
     std::vector<std::size_t> number(open_.size(), closed);
     std::vector<OpenHole> still_open;
     for (TipRun& run : runs) {
-      const std::size_t root = find(parent, run.hole);
+      const std::size_t root = holes.root(run.hole);
       if (number[root] == closed) {
         number[root] = still_open.size();
         still_open.push_back(std::move(open_[root]));
@@ -181,7 +177,7 @@ class HoleScanner::Scan {
       run.hole = number[root];
     }
     for (const TipRun& tip : tips_) {
-      const std::size_t root = find(parent, tip.hole);
+      const std::size_t root = holes.root(tip.hole);
       if (number[root] != closed) continue;
       complete(open_[root]);
       number[root] = 0;

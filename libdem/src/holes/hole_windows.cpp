@@ -13,6 +13,7 @@
 #include "numeric/random.h"
 
 namespace dem {
+using namespace numeric;
 namespace {
 
 constexpr int least_margin = 6;  // the spline's springs span three cells and bend with a few more
@@ -305,6 +306,7 @@ HolePatch fill_window(const std::vector<Hole>& holes, const HoleWindow& window, 
       if (!filled.z.empty()) continue;
       filled = surface(dem, data, patch.guide[i], work, run);
       patch.report.insert(patch.report.end(), filled.report.begin(), filled.report.end());
+      patch.contour_lines = patch.contour_lines || filled.contour_lines;
     }
   }
   const bool sigma =

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <vector>
 
+#include "numeric/union_find.h"
+
 namespace dem {
+using namespace numeric;
 namespace {
 
 /// Unknown cells [begin, end) of one row.
@@ -17,16 +20,6 @@ struct Voids {
   std::vector<std::size_t> cells;    // of each void, at its root
   std::vector<std::uint8_t> on_rim;  // of each void, at its root
 };
-
-std::size_t find(std::vector<std::size_t>& parent, std::size_t i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
-
-void join(std::vector<std::size_t>& parent, std::size_t a, std::size_t b) {
-  a = find(parent, a), b = find(parent, b);
-  parent[std::max(a, b)] = std::min(a, b);
-}
 
 void add_runs_of_row(const Mask& known, int row, std::vector<VoidRun>& runs) {
   const auto cells = known.row(row);
@@ -46,25 +39,27 @@ bool touch(const VoidRun& a, const VoidRun& b) { return a.begin <= b.end && b.be
 
 Voids find_voids(const Mask& known) {
   Voids v;
+  UnionFind voids;
   std::size_t above = 0;  // first run of the row above
   for (int row = 0; row < known.rows(); ++row) {
     const std::size_t here = v.runs.size();
     add_runs_of_row(known, row, v.runs);
-    for (std::size_t i = here; i < v.runs.size(); ++i) v.root.push_back(i);
+    voids.grow(v.runs.size());
 
     // Both rows are sorted: step on in the one whose run ends first.
     for (std::size_t a = above, b = here; a < here && b < v.runs.size();) {
-      if (touch(v.runs[a], v.runs[b])) join(v.root, a, b);
+      if (touch(v.runs[a], v.runs[b])) voids.join(a, b);
       v.runs[a].end < v.runs[b].end ? ++a : ++b;
     }
     above = here;
   }
 
+  v.root.resize(v.runs.size());
   v.cells.resize(v.runs.size());
   v.on_rim.resize(v.runs.size());
   for (std::size_t i = 0; i < v.runs.size(); ++i) {
     const auto& run = v.runs[i];
-    const std::size_t root = v.root[i] = find(v.root, i);
+    const std::size_t root = v.root[i] = voids.root(i);
     v.cells[root] += std::size_t(run.end - run.begin);
     if (run.row == 0 || run.row == known.rows() - 1 || run.begin == 0 || run.end == known.cols())
       v.on_rim[root] = 1;

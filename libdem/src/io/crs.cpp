@@ -10,7 +10,7 @@
 #include "dem/io/geodesy.h"
 #include "io/gdal_support.h"
 
-namespace dem {
+namespace dem::io {
 namespace {
 
 CrsUnits parse(const std::string& wkt) {
@@ -34,6 +34,25 @@ CrsUnits parse(const std::string& wkt) {
   return units;
 }
 
+}  // namespace
+
+CrsUnits crs_units(const std::string& wkt) {
+  if (wkt.empty()) return {};
+  // Parsing takes a thousand times as long as the length of a cell, and the text seldom changes.
+  thread_local std::string last_wkt;
+  thread_local CrsUnits last;
+  if (wkt != last_wkt) {
+    last = parse(wkt);
+    last_wkt = wkt;
+  }
+  return last;
+}
+
+}  // namespace dem::io
+
+namespace dem {
+namespace {
+
 struct FreeText {
   void operator()(char* text) const { CPLFree(text); }
 };
@@ -42,7 +61,7 @@ struct FreeText {
 
 std::string crs_wkt(const std::string& name) {
   if (name.empty()) return "";
-  const GdalErrors quiet;
+  const io::GdalErrors quiet;
   OGRSpatialReference crs;
   const char* const only_names[] = {"ALLOW_NETWORK_ACCESS=NO", "ALLOW_FILE_ACCESS=NO", nullptr};
   const bool number = name.find_first_not_of("0123456789") == name.npos;
@@ -58,18 +77,6 @@ std::string crs_wkt(const std::string& name) {
   if (error != OGRERR_NONE || !text)
     throw std::invalid_argument(fmt::format("crs = {}; has no description in WKT", name));
   return text;
-}
-
-CrsUnits crs_units(const std::string& wkt) {
-  if (wkt.empty()) return {};
-  // Parsing takes a thousand times as long as the length of a cell, and the text seldom changes.
-  thread_local std::string last_wkt;
-  thread_local CrsUnits last;
-  if (wkt != last_wkt) {
-    last = parse(wkt);
-    last_wkt = wkt;
-  }
-  return last;
 }
 
 }  // namespace dem

@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace dem {
+namespace dem::io {
 
 struct CrsUnits {
   bool geographic = false;
@@ -14,4 +14,4 @@ struct CrsUnits {
 /// Throws std::invalid_argument when the text is no coordinate system. Empty: metres.
 CrsUnits crs_units(const std::string& wkt);
 
-}  // namespace dem
+}  // namespace dem::io

@@ -1,7 +1,5 @@
 #include "dem/io/drawing.h"
 
-#include <OpenImageIO/imagebuf.h>
-#include <OpenImageIO/imagebufalgo.h>
 #include <fmt/format.h>
 #include <gdal_alg.h>
 #include <ogr_api.h>
@@ -15,10 +13,11 @@
 
 #include "dem/io/rasters.h"
 #include "io/gdal_support.h"
-#include "io/oiio_support.h"
+#include "io/images/image_module.h"
 #include "io/points/ogr_layers.h"
 
 namespace dem {
+using namespace io;
 namespace {
 
 const std::map<std::string, double> greys{
@@ -151,13 +150,10 @@ Raster<float> median_filter(const Raster<float>& z, int side, int passes, const 
     throw std::invalid_argument(fmt::format("passes = {}; must be in [0, 100]", passes));
   Raster<float> from = z, to(z.size());
   if (z.empty()) return from;
-  const OIIO::ImageSpec spec(z.cols(), z.rows(), 1, OIIO::TypeDesc::FLOAT);
   for (int pass = 0; pass < passes; ++pass) {
     run.report(double(pass) / passes, "median");
-    const OIIO::ImageBuf source(spec, from.cells().data());
-    OIIO::ImageBuf target(spec, to.cells().data());
-    if (!OIIO::ImageBufAlgo::median_filter(target, source, side, side, {}, run.threads))
-      throw std::runtime_error("median filter: " + one_line(target.geterror()));
+    image_module().median_filter(from.cells().data(), to.cells().data(), z.cols(), z.rows(), side,
+                                 run.threads);
     std::swap(from, to);
   }
   return from;

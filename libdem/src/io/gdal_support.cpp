@@ -10,7 +10,7 @@
 
 #include "dem/io/rasters.h"
 
-namespace dem {
+namespace dem::io {
 
 void register_gdal() {
   static const bool done = (GDALAllRegister(), true);
@@ -52,18 +52,6 @@ void GdalErrors::fail(const std::string& path, const std::string& fallback) cons
   throw IoError(path, cause);
 }
 
-int CPL_STDCALL GdalProgress::call(double part, const char*, void* self) {
-  auto& progress = *static_cast<GdalProgress*>(self);
-  if (progress.error_) return FALSE;
-  try {
-    progress.run_.report(part, progress.what_);
-    return TRUE;
-  } catch (...) {
-    progress.error_ = std::current_exception();
-    return FALSE;
-  }
-}
-
 DatasetPtr wrap_cells(void* cells, int cols, int rows, GDALDataType type) {
   register_gdal();
   DatasetPtr dataset(GDALCreate(GDALGetDriverByName("MEM"), "", cols, rows, 0, type, nullptr));
@@ -76,4 +64,4 @@ DatasetPtr wrap_cells(void* cells, int cols, int rows, GDALDataType type) {
   return dataset;
 }
 
-}  // namespace dem
+}  // namespace dem::io

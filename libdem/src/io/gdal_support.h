@@ -5,13 +5,13 @@
 #include <cpl_error.h>
 #include <gdal.h>
 
-#include <exception>
 #include <memory>
 #include <string>
 
 #include "dem/run.h"
+#include "io/kept_progress.h"
 
-namespace dem {
+namespace dem::io {
 
 /// Registers GDAL's drivers, once.
 void register_gdal();
@@ -42,19 +42,12 @@ class GdalErrors {
 };
 
 /// Hands GDAL's progress to a Run and brings its exceptions back across the C interface.
-class GdalProgress {
+class GdalProgress : public KeptProgress {
  public:
-  GdalProgress(const Run& run, std::string what) : run_(run), what_(std::move(what)) {}
-
-  static int CPL_STDCALL call(double part, const char* message, void* self);
-  void rethrow() const {
-    if (error_) std::rethrow_exception(error_);
+  using KeptProgress::KeptProgress;
+  static int CPL_STDCALL call(double part, const char*, void* self) {
+    return static_cast<GdalProgress*>(self)->report(part) ? TRUE : FALSE;
   }
-
- private:
-  const Run& run_;
-  std::string what_;
-  std::exception_ptr error_;
 };
 
 struct CloseDataset {
@@ -65,4 +58,4 @@ using DatasetPtr = std::unique_ptr<void, CloseDataset>;
 /// A dataset in memory whose single band is the caller's own cells; they must outlive it.
 DatasetPtr wrap_cells(void* cells, int cols, int rows, GDALDataType type);
 
-}  // namespace dem
+}  // namespace dem::io

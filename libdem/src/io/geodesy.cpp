@@ -11,6 +11,7 @@
 #include "io/crs.h"
 
 namespace dem {
+using namespace io;
 namespace {
 
 using GeographicLib::Ellipsoid;
@@ -102,6 +103,16 @@ Spacing middle_spacing(const GeoRef& ref, Size size) {
   if (!crs.geographic) return projected_spacing(ref, crs.unit);
   const Geodesic earth(crs.equatorial_radius_m, crs.flattening);
   return geographic_spacing(earth, ref, crs.unit, (size.cols - 1) / 2.0, (size.rows - 1) / 2.0);
+}
+
+void set_spacing(Dem& dem) {
+  dem.spacing = middle_spacing(dem.ref, dem.size());
+  set_row_spacing(dem);
+}
+
+void set_row_spacing(Dem& dem) {
+  dem.row_spacing.clear();
+  if (is_geographic(dem.ref)) dem.row_spacing = spacing_by_row(dem.ref, dem.size());
 }
 
 double cell_area_m2(const GeoRef& ref, int col, int row) {

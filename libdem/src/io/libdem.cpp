@@ -13,7 +13,8 @@
 #include <span>
 #include <stdexcept>
 
-#include "dem/io/geodesy.h"
+#include "dem/evaluation.h"
+#include "dem/fill.h"
 #include "dem/io/methods.h"
 #include "dem/io/rasters.h"
 
@@ -117,10 +118,15 @@ dem::ChosenMethod choose(const char* name) {
   return dem::find_method(dem::all_fill_methods(), name ? name : dem::default_fill_method());
 }
 
-/// Throws when a setting is refused: one known cell costs nothing to fill.
-void try_out(const dem::ChosenMethod& chosen) {
-  const dem::Dem one{dem::Raster<float>({1, 1}), dem::Mask({1, 1}, 1), {}, {}};
-  chosen.method->fill(one, chosen.settings, {});
+/// Limits of 0 are none.
+dem::HoleChoice holes_of(const libdem_choice& choice) {
+  dem::HoleChoice holes;
+  holes.inner_only = choice.inner_only != 0;
+  if (choice.max_area_km2 != 0) holes.max_area_km2 = choice.max_area_km2;
+  if (choice.max_distance_m != 0) holes.max_distance_m = choice.max_distance_m;
+  if (choice.min_cells != 0) holes.min_cells = choice.min_cells;
+  if (choice.where) holes.where = choice.where;
+  return holes;
 }
 
 dem::Run run_of(const libdem_run* run) {
@@ -150,9 +156,6 @@ libdem_status libdem_create(const float* heights, const uint8_t* known, int cols
 libdem_status libdem_read(const char* path, libdem_dem** dem, libdem_error* error) {
   return making(dem, error, [&] {
     dem::DemFile file = dem::read_dem(&given(path, "path"));
-    // The cell size that the command line fills a whole raster with: the same cells come out.
-    const dem::Size size = file.dem.size();
-    file.dem.spacing = dem::spacing_by_row(file.dem.ref, size)[std::size_t(size.rows / 2)];
     return std::unique_ptr<libdem_dem>(
         new libdem_dem{std::move(file.dem), std::move(file.source), {}});
   });
@@ -238,24 +241,38 @@ libdem_status libdem_set(libdem_method* method, const char* name, const char* va
   return guarded(error, [&] {
     dem::ChosenMethod changed = given(method, "method").chosen;
     changed.settings.emplace_back(&given(name, "name"), &given(value, "value"));
-    try_out(changed);
+    changed.check();
     method->chosen = std::move(changed);
   });
 }
 
 void libdem_free_method(libdem_method* method) { delete method; }
 
-libdem_status libdem_fill(const libdem_dem* dem, const libdem_method* method, const libdem_run* run,
-                          libdem_dem** filled, libdem_error* error) {
+libdem_status libdem_fill(const libdem_dem* dem, const libdem_method* method,
+                          const libdem_choice* choice, const libdem_run* run, libdem_dem** filled,
+                          libdem_error* error) {
   return making(filled, error, [&] {
     const libdem_dem& holes = given(dem, "dem");
-    const dem::ChosenMethod chosen = method ? method->chosen : choose(nullptr);
-    dem::Filled result = chosen.method->fill(holes.dem, chosen.settings, run_of(run));
-    auto made = std::make_unique<libdem_dem>();
-    made->dem = {std::move(result.z), dem::Mask(holes.dem.size(), 1), holes.dem.ref,
-                 holes.dem.spacing};
-    made->source = holes.source;
-    made->sigma = std::move(result.sigma);
-    return made;
+    dem::FillOptions options;
+    if (method) options.method = method->chosen;
+    if (choice) {
+      options.holes = holes_of(*choice);
+      options.whole = choice->whole != 0;
+    }
+    dem::HoleFill result = dem::fill_holes(holes.dem, options, {}, run_of(run));
+    return std::unique_ptr<libdem_dem>(
+        new libdem_dem{std::move(result.dem), holes.source, std::move(result.sigma)});
+  });
+}
+
+libdem_status libdem_evaluate(const libdem_dem* truth, const libdem_dem* got,
+                              const libdem_dem* sampled, libdem_errors* errors,
+                              libdem_error* error) {
+  return guarded(error, [&] {
+    libdem_errors& out = given(errors, "errors");
+    const dem::Evaluation evaluation = dem::evaluate_dem(
+        given(truth, "truth").dem, given(got, "got").dem, {sampled ? &sampled->dem : nullptr});
+    const dem::Errors& e = evaluation.judged_errors();
+    out = {e.cells, e.rmse_m, e.mae_m, e.bias_m, e.nmad_m, e.le90_m, e.max_m, e.slope_rmse_deg};
   });
 }

@@ -1,7 +1,5 @@
 #include "dem/io/methods.h"
 
-#include <OpenImageIO/imagebuf.h>
-#include <OpenImageIO/imagebufalgo.h>
 #include <fmt/format.h>
 #include <gdal_alg.h>
 
@@ -11,9 +9,10 @@
 #include <stdexcept>
 
 #include "io/gdal_support.h"
-#include "io/oiio_support.h"
+#include "io/images/image_module.h"
 
 namespace dem {
+using namespace io;
 namespace {
 
 /// The result of another library, with known cells bit for bit again whatever it did to them.
@@ -49,8 +48,7 @@ std::vector<Field> fields(IdwOptions& o) {
 
 Filled fill_idw(const Dem& dem, const IdwOptions& options, const Run& run) {
   check_fillable(dem);
-  IdwOptions checked = options;
-  check(fields(checked));
+  check_options(options);
 
   Raster<float> z = dem.z;
   Mask known = dem.known;
@@ -85,25 +83,14 @@ Filled fill_pushpull(const Dem& dem, const PushPullOptions&, const Run& run) {
 
   // Two channels, height and alpha; alpha 0 (and height 0, as colours come multiplied) is a hole.
   const auto [cols, rows] = dem.size();
-  OIIO::ImageSpec spec(cols, rows, 2, OIIO::TypeDesc::FLOAT);
-  spec.channelnames = {"Z", "A"};
-  spec.alpha_channel = 1;
   std::vector<float> pixels(2 * dem.size().cells());
   for (std::size_t i = 0; i < dem.size().cells(); ++i)
     if (dem.known.cells()[i]) {
       pixels[2 * i] = dem.z.cells()[i];
       pixels[2 * i + 1] = 1;
     }
-  const OIIO::ImageBuf holes(spec, pixels.data());
-  OIIO::ImageBuf filled;
-  if (!OIIO::ImageBufAlgo::fillholes_pushpull(filled, holes, {}, run.threads))
-    throw std::runtime_error("fillholes_pushpull: " + one_line(filled.geterror()));
-  run.report(0.9, "pushpull");
-
   Raster<float> z(dem.size());
-  if (!filled.get_pixels(OIIO::ROI(0, cols, 0, rows, 0, 1, 0, 1), OIIO::TypeDesc::FLOAT,
-                         z.cells().data()))
-    throw std::runtime_error("fillholes_pushpull: " + one_line(filled.geterror()));
+  image_module().fill_holes_pushpull(pixels.data(), z.cells().data(), cols, rows, run.threads);
   run.report(1, "pushpull");
   return finish(dem, std::move(z));
 }
@@ -113,9 +100,9 @@ Filled fill_pushpull(const Dem& dem, const PushPullOptions&, const Run& run) {
 const std::vector<FillMethod>& baseline_methods() {
   static const std::vector<FillMethod> table{
       make_method<IdwOptions>("idw", "inverse distance by GDAL's FillNodata, no distance limit", "",
-                              {}, fill_idw),
+                              {.bytes_per_cell = 64}, {}, fill_idw),
       make_method<PushPullOptions>("pushpull", "push-pull pyramid by OpenImageIO", "gortler1996",
-                                   {}, fill_pushpull)};
+                                   {.bytes_per_cell = 64}, {}, fill_pushpull)};
   return table;
 }
 

@@ -15,6 +15,7 @@
 #include "io/staged_file.h"
 
 namespace dem {
+using namespace io;
 namespace {
 
 struct DestroyGeometry {

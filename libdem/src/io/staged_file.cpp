@@ -12,7 +12,7 @@
 
 #include "dem/io/rasters.h"
 
-namespace dem {
+namespace dem::io {
 namespace fs = std::filesystem;
 
 std::string extension(const std::string& path) {
@@ -34,7 +34,8 @@ StagedFile::StagedFile(const std::string& path, bool overwrite)
     throw IoError(path, "is a folder; .hgt tiles go into it when it ends in /");
   if (fs::exists(status)) {
     if (!fs::is_regular_file(status)) throw IoError(path, "is not a regular file");
-    if (!overwrite) throw IoError(path, "exists; give --overwrite to replace it");
+    if (!overwrite)
+      throw IoError(path, "exists, and overwriting it was not asked for", "overwrite");
   }
 
   // The folder is tried, not asked: permissions alone do not tell.
@@ -72,7 +73,8 @@ void StagedFile::commit() {
     for (const auto& entry : fs::directory_iterator(folder_)) {
       const fs::path file = entry.path().filename();
       if (file != name && !ours(file) && !overwrite_ && fs::exists(place(file)))
-        throw IoError(place(file).string(), "exists; give --overwrite to replace it");
+        throw IoError(place(file).string(), "exists, and overwriting it was not asked for",
+                      "overwrite");
     }
 
     // Sidecars of the file that was there would be read as those of the new one.
@@ -88,8 +90,12 @@ void StagedFile::commit() {
   }
 }
 
+}  // namespace dem::io
+
+namespace dem {
+
 void write_text(const std::string& path, const std::string& text, bool overwrite) {
-  StagedFile staged(path, overwrite);
+  io::StagedFile staged(path, overwrite);
   staged.write(text);
   staged.commit();
 }

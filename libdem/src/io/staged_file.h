@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-namespace dem {
+namespace dem::io {
 
 /// The extension of a path in lower case, with its dot: ".tif", or "".
 std::string extension(const std::string& path);
@@ -37,4 +37,4 @@ class StagedFile {
   bool overwrite_;
 };
 
-}  // namespace dem
+}  // namespace dem::io

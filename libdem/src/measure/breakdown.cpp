@@ -7,9 +7,10 @@
 #include <limits>
 #include <stdexcept>
 
-#include "numeric/envelope.h"
+#include "numeric/distance.h"
 
 namespace dem {
+using namespace numeric;
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -119,7 +120,7 @@ Raster<float> distance_to_known(const Mask& known, Spacing spacing) {
   for (int row = 0; row < known.rows(); ++row) {
     const auto cells = distance.row(row);
     std::ranges::transform(cells, line.begin(), [](float d) { return double(d) * double(d); });
-    envelope.apply(line, spacing.dx_m);
+    envelope.apply(line, spacing.dx_m * spacing.dx_m);
     std::ranges::transform(line, cells.begin(), [](double d) { return float(std::sqrt(d)); });
   }
   return distance;

@@ -15,6 +15,7 @@
 #include "numeric/parallel.h"
 
 namespace dem {
+using namespace numeric;
 namespace {
 
 constexpr double kDegrees = 180 / std::numbers::pi;

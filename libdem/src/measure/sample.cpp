@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <stdexcept>
@@ -16,6 +17,7 @@
 #include "numeric/random.h"
 
 namespace dem {
+using namespace numeric;
 namespace {
 
 /// Tells the draws of this file apart from other uses of the same seed.
@@ -229,10 +231,22 @@ Dem sample_edges(const Dem& dem, std::size_t keep) {
   return only(dem, std::move(mask), "keep", double(keep));
 }
 
+std::vector<Field> fields(VoidOptions& o) {
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  return {{"remove", o.remove, {0, infinite}, "cells", "number of known cells to cut out"},
+          {"min_across", o.min_across, {1, infinite}, "cells", "width of the smallest voids"},
+          {"max_across",
+           o.max_across,
+           {1, infinite},
+           "cells",
+           "width of the largest voids; not below min_across"},
+          {"seed", o.seed, "seed of the voids' places and shapes"}};
+}
+
 Dem sample_voids(const Dem& dem, const VoidOptions& options) {
   check_fillable(dem);
+  check_options(options);
   check_count("remove", options.remove, 0, count(dem.known) - 1);
-  check_least("min_across", options.min_across, 1);
   check_least("max_across", options.max_across, options.min_across);
   Mask mask = dem.known;
   const SteepCells steep(dem);

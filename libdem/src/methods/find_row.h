@@ -8,7 +8,7 @@
 
 #include "dem/methods.h"
 
-namespace dem {
+namespace dem::methods {
 
 /// The row called `name`, "NAME" or "NAME:PRESET", and the settings of its preset.
 template <class Row>
@@ -33,4 +33,4 @@ std::pair<const Row*, Settings> find_row(const std::vector<Row>& table, std::str
   return {&*row, preset->settings};
 }
 
-}  // namespace dem
+}  // namespace dem::methods

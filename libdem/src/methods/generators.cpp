@@ -8,6 +8,7 @@
 #include "methods/find_row.h"
 
 namespace dem {
+using namespace methods;
 namespace {
 
 /// A generator of whole planets.

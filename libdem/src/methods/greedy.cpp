@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 namespace dem {
@@ -16,6 +17,8 @@ struct Candidate {
 
 /// Kept cells are about so many times as many in each round, while a count is the aim.
 constexpr double growth = 1.4;
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
 
 void keep(Dem& kept, const Dem& dem, int col, int row) {
   kept.known(col, row) = 1;
@@ -85,8 +88,9 @@ std::vector<Candidate> worst_of_blocks(const Dem& dem, const Dem& kept, const Ra
   return worst;
 }
 
-void check(const GreedyOptions& o, std::size_t known) {
-  if ((o.count > 0) == (o.max_error_m > 0) || !(o.max_error_m >= 0))
+void check_for(const GreedyOptions& o, std::size_t known) {
+  check_options(o);
+  if ((o.count > 0) == (o.max_error_m > 0))
     throw std::invalid_argument("greedy: exactly one of count and max_error must be above 0");
   if (o.count > 0 && (o.count < 4 || o.count > known))
     throw std::invalid_argument(
@@ -95,11 +99,24 @@ void check(const GreedyOptions& o, std::size_t known) {
 
 }  // namespace
 
+std::vector<Field> fields(GreedyOptions& o) {
+  return {{"count",
+           o.count,
+           {0, infinite},
+           "cells",
+           "keep exactly this number of cells; 0: as many as max_error needs"},
+          {"max_error",
+           o.max_error_m,
+           {0, infinite},
+           "m",
+           "stop when no known cell is missed by more; 0: count alone decides"}};
+}
+
 GreedySample sample_greedy(const Dem& dem, const ChosenMethod& method, const GreedyOptions& options,
                            const Run& run) {
   check_fillable(dem);
   const std::size_t known = count(dem.known);
-  check(options, known);
+  check_for(options, known);
   const bool by_count = options.count > 0;
   const std::size_t most = by_count ? options.count : known;
   GreedySample out{first_cells(dem, most), {}};

@@ -1,15 +1,12 @@
 #include "dem/gridding.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
-#include "dem/spline.h"
 #include "numeric/cubic.h"
 
 namespace dem {
+using namespace numeric;
 namespace {
 
 /// A pass corrects a height by at most so many times what the plane moved it by: where points
@@ -33,38 +30,21 @@ Misfit misfit_of(const std::vector<OffCentre>& points, const Raster<float>& z) {
   return m;
 }
 
-double figure(const Filled& filled, std::string_view name) {
-  const auto found = std::ranges::find(filled.report, name, &Figure::name);
-  return found == filled.report.end() ? 0 : found->value;
-}
-
-/// The spline with each cell's own noise.
-Filled fill_noisy(const Binned& b, const Settings& settings, const Run& run) {
-  SplineOptions options;
-  apply(settings, fields(options));
-  SplineOptions first = options;
-  first.sigma = SplineSigma::law;
-  const double scale = figure(fill_spline(b.dem, first, run.part(0, 0.5)), "scale");
-  if (!(scale > 0))
-    return fill_spline(b.dem, options, run.part(0.5, 1));  // a plane: nothing to weigh
-  Raster<float> noise(b.dem.size());
-  for (std::size_t i = 0; i < noise.cells().size(); ++i) {
-    const double sigma = double(b.sigma.cells()[i]);
-    noise.cells()[i] = float(sigma * sigma / (scale * scale));
-  }
-  options.nugget = 1;
-  options.smooth_known = true;
-  return fill_spline(b.dem, noise, options, run.part(0.5, 1));
-}
-
 }  // namespace
+
+std::vector<Field> fields(GriddingOptions& o) {
+  return {{"passes",
+           o.passes,
+           {0, 100},
+           "",
+           "number of correction passes that pull the surface to points off cell centres"}};
+}
 
 Gridded fill_points(const Binned& binned, const ChosenMethod& method,
                     const GriddingOptions& options, const Run& run) {
-  if (options.passes < 0 || options.passes > 100)
-    throw std::invalid_argument(fmt::format("passes = {}; must be in [0, 100]", options.passes));
-  if (method.method->name == "spline" && !binned.sigma.empty()) {
-    Gridded out{fill_noisy(binned, method.settings, run), {}};
+  check_options(options);
+  if (method.method->fill_noisy && !binned.sigma.empty()) {
+    Gridded out{method.method->fill_noisy(binned.dem, binned.sigma, method.settings, run), {}};
     out.misfit = misfit_of(binned.off_centre, out.filled.z);
     return out;
   }

@@ -10,6 +10,7 @@
 #include "numeric/cubic.h"
 
 namespace dem {
+using namespace numeric;
 namespace {
 
 /// Along one axis: coarse index = origin + step * fine index.
@@ -37,8 +38,7 @@ struct Axes {
 };
 
 Axes finer_axes(Size size, const SupersampleOptions& o) {
-  if (!(o.factor > 1) || !std::isfinite(o.factor))
-    throw std::invalid_argument(fmt::format("factor = {}; must be above 1", o.factor));
+  check_options(o);
   const Axes axes{finer_axis(size.cols, o), finer_axis(size.rows, o)};
   if (double(axes.x.cells) * axes.y.cells > 2147483647.)
     throw std::invalid_argument(fmt::format("factor = {}: {} x {} cells; must be fewer than 2^31",
@@ -113,6 +113,22 @@ void tell_misses(const Raster<float>& missing, std::size_t known, Supersampled& 
 }
 
 }  // namespace
+
+std::vector<Field> fields(SupersampleOptions& o) {
+  return {
+      {"factor",
+       o.factor,
+       {1, 2147483646, true},
+       "",
+       "how many times finer the cells are: 2 halves the cell size"},
+      {"preserve",
+       o.preserve,
+       {"heights", "block-mean"},
+       "what is kept: the heights at the coarse cells' centres, or the mean of each coarse cell"},
+      {"nodes", o.nodes,
+       "the outer fine cells have the centres of the outer coarse ones; false: both lattices "
+       "have the same outer edges"}};
+}
 
 Lattice finer_lattice(const Dem& dem, const SupersampleOptions& options) {
   const auto [x, y] = finer_axes(dem.size(), options);

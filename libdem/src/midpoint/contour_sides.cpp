@@ -7,7 +7,8 @@
 
 #include "numeric/parallel.h"
 
-namespace dem {
+namespace dem::midpoint {
+using namespace numeric;
 namespace {
 
 constexpr int farthest = 48;  // cells that a contour cell looks around
@@ -118,4 +119,4 @@ Dem with_contour_sides(const Dem& dem, const Run& run) {
   return with_threads(run.threads, [&] { return add_sides(dem, run); });
 }
 
-}  // namespace dem
+}  // namespace dem::midpoint

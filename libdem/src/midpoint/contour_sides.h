@@ -5,7 +5,7 @@
 #include "dem/dem.h"
 #include "dem/run.h"
 
-namespace dem {
+namespace dem::midpoint {
 
 /// The DEM with the unknown cells beside its contour lines known.
 /// Method: [belhadj2007] section 5: "two behaviors are necessary in order to interpolate upper
@@ -16,4 +16,4 @@ namespace dem {
 ///         takes the mean of what the contour cells around say of it, weighted by 1 / distance^2.
 Dem with_contour_sides(const Dem& dem, const Run& run);
 
-}  // namespace dem
+}  // namespace dem::midpoint

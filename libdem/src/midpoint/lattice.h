@@ -23,7 +23,7 @@
 #include "dem/mcmd.h"
 #include "dem/raster.h"
 
-namespace dem {
+namespace dem::midpoint {
 
 /// One axis of the lattice.
 struct Axis {
@@ -109,4 +109,4 @@ inline double distance_cells(int col, int row, int to_col, int to_row) {
   return std::hypot(double(to_col - col), double(to_row - row));
 }
 
-}  // namespace dem
+}  // namespace dem::midpoint

@@ -11,6 +11,7 @@
 #include "midpoint/row_kernels.h"
 
 namespace dem {
+using namespace midpoint;
 namespace {
 
 const std::vector<std::string> subdivisions{"triangle_edge", "diamond_square"};
@@ -26,8 +27,8 @@ float lowest_known(const Dem& dem) {
 }
 
 /// What the passes share; the heights' zero is the datum where bends act on it, else near the data.
-Midpoint midpoint(const Dem& dem, const Raster<CellKind>& kinds, Subdivision subdivision,
-                  double datum_m, bool bends, const Run& run) {
+Midpoint midpoint_of(const Dem& dem, const Raster<CellKind>& kinds, Subdivision subdivision,
+                     double datum_m, bool bends, const Run& run) {
   const double reference_m = bends ? datum_m : double(lowest_known(dem));
   return {dem, kinds, subdivision, float(reference_m), run};
 }
@@ -144,13 +145,13 @@ Raster<float> fill_mcmd(const Dem& dem, const McmdOptions& o, const Run& run,
   if (o.order == UpOrder::waves) {
     const Dem carried = carry_up_mcmd(dem, o, run.part(0, 0.7), kinds);
     const auto fill =
-        midpoint(carried, kinds, o.subdivision, o.datum_m, bends(o), run.part(0.7, 1));
+        midpoint_of(carried, kinds, o.subdivision, o.datum_m, bends(o), run.part(0.7, 1));
     return displace(fill, bend(o), noise(o));
   }
   check_options(o);
   check_fillable(dem);
   check_kinds(dem, kinds);
-  const auto fill = midpoint(dem, kinds, o.subdivision, o.datum_m, bends(o), run);
+  const auto fill = midpoint_of(dem, kinds, o.subdivision, o.datum_m, bends(o), run);
   return carry_up_and_displace(fill, pull(o), bend(o), noise(o));
 }
 
@@ -162,7 +163,7 @@ Dem carry_up_mcmd(const Dem& dem, const McmdOptions& o, const Run& run,
   if (o.two_sided)
     return carry_up_mcmd(with_contour_sides(dem, run.part(0, 0.8)), one_sided(o), run.part(0.8, 1),
                          kinds);
-  const auto fill = midpoint(dem, kinds, o.subdivision, o.datum_m, bends(o), run);
+  const auto fill = midpoint_of(dem, kinds, o.subdivision, o.datum_m, bends(o), run);
   return o.order == UpOrder::levels ? carry_up_by_levels(fill, pull(o))
                                     : carry_up_in_waves(fill, pull(o), {});
 }
@@ -173,14 +174,15 @@ Raster<float> fill_md(const Dem& dem, const MdOptions& o, const Run& run,
   check_shape(dem);
   check_kinds(dem, kinds);
   const Bend bend{o.I, o.I_ridge, o.I_river};
-  const auto fill = midpoint(dem, kinds, o.subdivision, o.datum_m, bend != Bend{}, run);
+  const auto fill = midpoint_of(dem, kinds, o.subdivision, o.datum_m, bend != Bend{}, run);
   return displace(fill, bend, noise(o), o.datum_m);
 }
 
 Raster<float> fill_mdi(const Dem& dem, const MdiOptions& o, const Run& run) {
   const Dem carried = carry_up_mdi(dem, o, run.part(0, 0.7));
   const Raster<CellKind> no_kinds;
-  const auto fill = midpoint(carried, no_kinds, o.subdivision, o.datum_m, false, run.part(0.7, 1));
+  const auto fill =
+      midpoint_of(carried, no_kinds, o.subdivision, o.datum_m, false, run.part(0.7, 1));
   return displace(fill, {}, noise(o));
 }
 
@@ -188,7 +190,7 @@ Dem carry_up_mdi(const Dem& dem, const MdiOptions& o, const Run& run) {
   check_options(o);
   check_fillable(dem);
   const Raster<CellKind> no_kinds;
-  return carry_up_in_waves(midpoint(dem, no_kinds, o.subdivision, o.datum_m, false, run), {},
+  return carry_up_in_waves(midpoint_of(dem, no_kinds, o.subdivision, o.datum_m, false, run), {},
                            {o.rs_bu, o.seed});
 }
 

@@ -8,7 +8,7 @@
 #include "dem/mcmd.h"
 #include "dem/run.h"
 
-namespace dem {
+namespace dem::midpoint {
 
 /// The exponent I of equations 2 and 3, for each CellKind.
 using Bend = std::array<double, 3>;
@@ -64,4 +64,4 @@ Raster<float> carry_up_and_displace(const Midpoint& fill, const Pull& pull, cons
 /// wave becomes the mean of its known children, and a cell of the next wave.
 Dem carry_up_in_waves(const Midpoint& fill, const Pull& pull, const UpNoise& noise);
 
-}  // namespace dem
+}  // namespace dem::midpoint

@@ -27,7 +27,8 @@
 #include "numeric/parallel.h"
 #include "numeric/random.h"
 
-namespace dem {
+namespace dem::midpoint {
+using namespace numeric;
 
 double bend_factor(double exponent, double part) {
   if (exponent == 0) return 1;
@@ -756,4 +757,4 @@ Raster<float> carry_up_and_displace(const Midpoint& fill, const Pull& pull, cons
   });
 }
 
-}  // namespace dem
+}  // namespace dem::midpoint

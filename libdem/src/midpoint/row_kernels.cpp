@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <limits>
 
-#include "numeric/vectorised.h"
+#include "numeric/simd.h"
 
-namespace dem {
+namespace dem::midpoint {
 namespace {
 
 inline std::int32_t mask_of(bool condition) { return -std::int32_t(condition); }
@@ -141,7 +141,8 @@ DEM_VECTORISED void add_own(const float* height_row, const float* known_row, con
   }
 }
 
-// Floats are compared as integers that are in the same order: the compiler takes those side by side.
+// Floats are compared as integers that are in the same order: the compiler takes those side by
+// side.
 DEM_VECTORISED float lowest_of_known(const float* z_row, const std::uint8_t* known_row, int n) {
   const float* __restrict z = z_row;
   const std::uint8_t* __restrict known = known_row;
@@ -156,4 +157,4 @@ DEM_VECTORISED float lowest_of_known(const float* z_row, const std::uint8_t* kno
   return std::bit_cast<float>(ordered(least));
 }
 
-}  // namespace dem
+}  // namespace dem::midpoint

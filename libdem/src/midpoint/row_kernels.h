@@ -6,7 +6,7 @@
 #include <bit>
 #include <cstdint>
 
-namespace dem {
+namespace dem::midpoint {
 
 /// Weights of the eight neighbours: left, right, up, down, and the corners between.
 struct Cross {
@@ -72,4 +72,4 @@ inline float choose(std::int32_t mask, float yes, float no) {
                               (std::bit_cast<std::int32_t>(no) & ~mask));
 }
 
-}  // namespace dem
+}  // namespace dem::midpoint

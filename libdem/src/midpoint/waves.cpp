@@ -8,7 +8,8 @@
 #include "numeric/parallel.h"
 #include "numeric/random.h"
 
-namespace dem {
+namespace dem::midpoint {
+using namespace numeric;
 namespace {
 
 constexpr std::uint64_t stream_up = 2;
@@ -85,4 +86,4 @@ Dem carry_up_in_waves(const Midpoint& fill, const Pull& pull, const UpNoise& noi
   return dem;
 }
 
-}  // namespace dem
+}  // namespace dem::midpoint

@@ -7,7 +7,7 @@
 
 #include "dem/raster.h"
 
-namespace dem {
+namespace dem::numeric {
 
 /// Weights of four cells in a row, for a place t (0 to 1) between the middle two; exact on
 /// quadratics.
@@ -37,4 +37,4 @@ inline double cubic_at(const Raster<float>& z, double col, double row) {
   return sum;
 }
 
-}  // namespace dem
+}  // namespace dem::numeric

@@ -7,7 +7,7 @@
 
 #include "dem/dem.h"
 
-namespace dem {
+namespace dem::numeric {
 
 /// Metres of height per metre of way, towards east and towards south.
 struct Gradient {
@@ -80,4 +80,4 @@ class GradientOf {
   Spacing cell_;
 };
 
-}  // namespace dem
+}  // namespace dem::numeric

@@ -6,7 +6,7 @@
 
 #include "dem/raster.h"
 
-namespace dem {
+namespace dem::numeric {
 
 /// Whether known cells have more known neighbours than cells that lie at random: as along lines.
 /// At random a cell knows 8 * density of its neighbours, give or take a part 1 / sqrt(pairs).
@@ -24,4 +24,4 @@ inline bool lie_together(const Mask& mask) {
   return pairs > at_random * (1 + 5 / std::sqrt(pairs));
 }
 
-}  // namespace dem
+}  // namespace dem::numeric

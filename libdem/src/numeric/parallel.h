@@ -8,7 +8,7 @@
 
 #include <algorithm>
 
-namespace dem {
+namespace dem::numeric {
 
 /// Runs `work()` with at most `threads` threads for the loops inside it (0: all cores). More
 /// threads than cores are not started.
@@ -29,4 +29,4 @@ void parallel_for(int begin, int end, int grain, Each each) {
                     });
 }
 
-}  // namespace dem
+}  // namespace dem::numeric

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-namespace dem {
+namespace dem::numeric {
 
 /// A 64-bit mixer: each output bit depends on each input bit (finaliser by xor-shift-multiply).
 constexpr std::uint64_t mix(std::uint64_t x) {
@@ -43,10 +43,10 @@ class Sequence {
     ++count_;
     return random_bits(seed_, stream_, int(count_ & 0x7fffffff), int(count_ >> 31));
   }
-  std::uint64_t below(std::uint64_t bound) { return dem::below(bits(), bound); }
+  std::uint64_t below(std::uint64_t bound) { return numeric::below(bits(), bound); }
 
  private:
   std::uint64_t seed_, stream_, count_ = 0;
 };
 
-}  // namespace dem
+}  // namespace dem::numeric

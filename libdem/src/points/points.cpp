@@ -12,6 +12,7 @@
 #include "numeric/parallel.h"
 
 namespace dem {
+using namespace numeric;
 namespace {
 
 /// Points nearer to a centre than this part of a cell lie on it: coordinates as text are rounded.
@@ -213,7 +214,8 @@ std::size_t reject_outliers(Dem& dem, double times, const Run& run) {
   return rejected;
 }
 
-/// The cells of a window, whose first is `from`, that breaks part from a cell; empty when none is broken.
+/// The cells of a window, whose first is `from`, that breaks part from a cell; empty when none is
+/// broken.
 Mask cells_beyond(const Mask& breaks, Cell cell, Cell from, Size size) {
   if (!is_broken(breaks, from.col, from.row, size.cols, size.rows)) return {};
   Mask known(size), within(size);
@@ -249,6 +251,7 @@ struct PointBins::Bins {
 
   Bins(Lattice l, const BinOptions& o, Breaklines breaklines)
       : lattice(std::move(l)), options(o), lines(std::move(breaklines)), to_cells(lattice.ref) {
+    check_options(options);
     const Size size = lattice.size;
     if (size.cols < 1 || size.rows < 1)
       throw std::invalid_argument(
@@ -492,6 +495,22 @@ void PointBins::Bins::move_to_centres(Binned& out, const Run& run) const {
   }
   for (const auto& part : off_centre)
     out.off_centre.insert(out.off_centre.end(), part.begin(), part.end());
+}
+
+std::vector<Field> fields(BinOptions& o) {
+  return {{"combine",
+           o.combine,
+           {"mean", "min", "max", "median"},
+           "what becomes of several points in one cell"},
+          {"plane", o.plane,
+           "a height is moved to the centre of its cell along the plane through the cells around; "
+           "false: it is taken as it is"},
+          {"outliers",
+           o.outliers,
+           {0, 1e9},
+           "",
+           "drop cells more than this number of robust standard deviations from their neighbours; "
+           "0: drop none"}};
 }
 
 PointBins::PointBins(Lattice lattice, const BinOptions& options, Breaklines lines)

@@ -11,6 +11,7 @@
 #include "numeric/parallel.h"
 
 namespace dem {
+using namespace numeric;
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();

@@ -16,6 +16,8 @@
 #include "render/sky.h"
 
 namespace dem {
+using namespace numeric;
+using namespace render;
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -148,8 +150,8 @@ double linear(double srgb) {
   return s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
 }
 
-/// `threshold`, in [0, 1), decides between the two nearest bytes: with one that changes from pixel to
-/// pixel an even sky has no bands.
+/// `threshold`, in [0, 1), decides between the two nearest bytes: with one that changes from pixel
+/// to pixel an even sky has no bands.
 std::uint8_t srgb(double light, double threshold) {
   const double l = std::clamp(light, 0.0, 1.0);
   const double s = l <= 0.0031308 ? 12.92 * l : 1.055 * std::pow(l, 1 / 2.4) - 0.055;

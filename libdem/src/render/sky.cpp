@@ -8,7 +8,8 @@
 
 #include "numeric/parallel.h"
 
-namespace dem {
+namespace dem::render {
+using namespace numeric;
 namespace {
 
 constexpr double kMostCells = 1.2e6;  // more detail than a picture shows
@@ -79,4 +80,4 @@ double SkyView::operator()(double col, double row) const {
          v * ((1 - u) * double(share(i, j1)) + u * double(share(i1, j1)));
 }
 
-}  // namespace dem
+}  // namespace dem::render

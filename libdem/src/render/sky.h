@@ -4,7 +4,7 @@
 #include "dem/dem.h"
 #include "dem/run.h"
 
-namespace dem {
+namespace dem::render {
 
 /// The share of the sky's light that reaches level ground at each cell, 1 where no ground stands
 /// over the horizon, on every `step`-th column and row.
@@ -21,4 +21,4 @@ struct SkyView {
   int step = 1;
 };
 
-}  // namespace dem
+}  // namespace dem::render

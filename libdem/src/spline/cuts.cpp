@@ -6,7 +6,8 @@
 #include "dem/breaklines.h"
 #include "numeric/parallel.h"
 
-namespace dem {
+namespace dem::spline {
+using namespace numeric;
 namespace {
 
 constexpr int difference[4][4] = {{1, 0, 0, 0}, {-1, 1, 0, 0}, {1, -2, 1, 0}, {-1, 3, -3, 1}};
@@ -125,4 +126,4 @@ Mask coarser_breaks(const Mask& fine, Size coarse, bool half_x, bool half_y) {
   return out;
 }
 
-}  // namespace dem
+}  // namespace dem::spline

@@ -8,9 +8,10 @@
 #include "dem/dem.h"
 #include "spline/springs.h"
 
-namespace dem {
+namespace dem::spline {
 
-/// A row of the matrix A at a cell some of whose springs are cut; entries in the order of `diamond`.
+/// A row of the matrix A at a cell some of whose springs are cut; entries in the order of
+/// `diamond`.
 struct CutCell {
   int col;
   std::array<double, diamond_points> entry;
@@ -45,8 +46,8 @@ class CutCells {
 /// Cells at most `reach` columns and rows from a broken edge, by row.
 std::vector<std::vector<int>> cells_near_breaks(const Mask& breaks, int reach);
 
-/// Breaks of the grid that keeps every second column (half_x) and row: an edge is broken when one that
-/// it stands for is.
+/// Breaks of the grid that keeps every second column (half_x) and row: an edge is broken when one
+/// that it stands for is.
 Mask coarser_breaks(const Mask& fine, Size coarse, bool half_x, bool half_y);
 
-}  // namespace dem
+}  // namespace dem::spline

@@ -8,25 +8,9 @@
 #include <vector>
 
 #include "dem/raster.h"
+#include "numeric/simd.h"
 
-// Several versions of a hot loop, the best chosen when the program starts. None fuses multiply and
-// add, so all give the same bits.
-#if defined(__x86_64__) && defined(__linux__) && defined(__OPTIMIZE__) && \
-    !defined(__SANITIZE_ADDRESS__)
-#define DEM_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
-#else
-#define DEM_CLONES
-#endif
-#define DEM_INLINE __attribute__((always_inline))
-#if defined(__clang__)
-#define DEM_INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
-#elif defined(__GNUC__) && defined(__OPTIMIZE__)
-#define DEM_INDEPENDENT _Pragma("GCC ivdep")
-#else
-#define DEM_INDEPENDENT
-#endif
-
-namespace dem {
+namespace dem::spline {
 
 /// A raster whose rows have at least eight cells of margin on either side. The margin stays 0.
 template <class T>
@@ -96,4 +80,4 @@ void clear_gaps(T* row, std::span<const Span> spans, int cols) {
   std::fill(row + done, row + cols, T(0));
 }
 
-}  // namespace dem
+}  // namespace dem::spline

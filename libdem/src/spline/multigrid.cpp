@@ -5,7 +5,8 @@
 
 #include "numeric/parallel.h"
 
-namespace dem {
+namespace dem::spline {
+using namespace numeric;
 namespace {
 
 constexpr int degree = 6;             // of the Chebyshev smoother, before and after the coarse grid
@@ -73,16 +74,16 @@ DEM_INLINE inline void chebyshev_step(const RowStencil<float>& A, const float* c
   });
 }
 
-DEM_CLONES void chebyshev_row(const RowStencil<float>& A, const float* const* now,
-                              const float* before, const float* b, const float* dinv, float a,
-                              float c, Span span, int cols, float* next) {
+DEM_VECTORISED void chebyshev_row(const RowStencil<float>& A, const float* const* now,
+                                  const float* before, const float* b, const float* dinv, float a,
+                                  float c, Span span, int cols, float* next) {
   chebyshev_step<false>(A, now, before, b, dinv, nullptr, a, c, span, cols, next);
 }
 
-DEM_CLONES void weighted_chebyshev_row(const RowStencil<float>& A, const float* const* now,
-                                       const float* before, const float* b, const float* dinv,
-                                       const float* w, float a, float c, Span span, int cols,
-                                       float* next) {
+DEM_VECTORISED void weighted_chebyshev_row(const RowStencil<float>& A, const float* const* now,
+                                           const float* before, const float* b, const float* dinv,
+                                           const float* w, float a, float c, Span span, int cols,
+                                           float* next) {
   chebyshev_step<true>(A, now, before, b, dinv, w, a, c, span, cols, next);
 }
 
@@ -93,9 +94,9 @@ DEM_INLINE inline void keep_free(const float* dinv, Span span, float* out) {
   for (int x = span.begin; x < span.end; ++x) out[x] = dinv[x] != 0 ? out[x] : 0;
 }
 
-DEM_CLONES void free_residual_row(const RowStencil<float>& A, const float* const* u, const float* b,
-                                  const float* dinv, const float* w, Span span, int cols,
-                                  float* out) {
+DEM_VECTORISED void free_residual_row(const RowStencil<float>& A, const float* const* u,
+                                      const float* b, const float* dinv, const float* w, Span span,
+                                      int cols, float* out) {
   const float* here = u[3];
   if (w)
     for_span(A, u, span, cols,
@@ -105,7 +106,8 @@ DEM_CLONES void free_residual_row(const RowStencil<float>& A, const float* const
   keep_free(dinv, span, out);
 }
 
-DEM_CLONES void first_step_row(const float* dinv, const float* b, float c, Span span, float* out) {
+DEM_VECTORISED void first_step_row(const float* dinv, const float* b, float c, Span span,
+                                   float* out) {
   DEM_INDEPENDENT
   for (int x = span.begin; x < span.end; ++x) out[x] = c * dinv[x] * b[x];
 }
@@ -113,21 +115,21 @@ DEM_CLONES void first_step_row(const float* dinv, const float* b, float c, Span 
 // ---- Between grids
 
 /// sum = here + (sum + below) / 2.
-DEM_CLONES void between_row(const float* here, const float* below, int cols, float* sum) {
+DEM_VECTORISED void between_row(const float* here, const float* below, int cols, float* sum) {
   DEM_INDEPENDENT
   for (int x = 0; x < cols; ++x) sum[x] = here[x] + 0.5f * (sum[x] + below[x]);
 }
 
 /// Half of the transposed linear interpolation: out[X] = in[2X] + (in[2X - 1] + in[2X + 1]) / 2.
-DEM_CLONES void halve_row(const float* in, int coarse_cols, float* out) {
+DEM_VECTORISED void halve_row(const float* in, int coarse_cols, float* out) {
   DEM_INDEPENDENT
   for (int X = 0; X < coarse_cols; ++X) out[X] = in[2 * X] + 0.5f * (in[2 * X - 1] + in[2 * X + 1]);
 }
 
 /// Linear interpolation of a coarse row, added to a fine one's free cells; columns [begin, end),
 /// even.
-DEM_CLONES void double_row(const float* coarse, const float* u, const float* dinv, int begin,
-                           int end, float* out) {
+DEM_VECTORISED void double_row(const float* coarse, const float* u, const float* dinv, int begin,
+                               int end, float* out) {
   DEM_INDEPENDENT
   for (int X = begin / 2; X < (end + 1) / 2; ++X) {
     const float even = coarse[X], odd = 0.5f * (coarse[X] + coarse[X + 1]);
@@ -137,13 +139,13 @@ DEM_CLONES void double_row(const float* coarse, const float* u, const float* din
   }
 }
 
-DEM_CLONES void mean_row(const float* one, const float* other, int cols, float* out) {
+DEM_VECTORISED void mean_row(const float* one, const float* other, int cols, float* out) {
   DEM_INDEPENDENT
   for (int x = 0; x < cols; ++x) out[x] = 0.5f * (one[x] + other[x]);
 }
 
-DEM_CLONES void copy_row(const float* coarse, const float* u, const float* dinv, int begin, int end,
-                         float* out) {
+DEM_VECTORISED void copy_row(const float* coarse, const float* u, const float* dinv, int begin,
+                             int end, float* out) {
   DEM_INDEPENDENT
   for (int x = begin; x < end; ++x) {
     const float sum = u[x] + coarse[x];
@@ -227,7 +229,8 @@ void interpolate_broken(const Level& fine, Halving half, int y, const Grid<float
   }
 }
 
-/// Coarse rows [Y0, Y1) of the transposed interpolation of the fine rows that fine_row(y, row) makes.
+/// Coarse rows [Y0, Y1) of the transposed interpolation of the fine rows that fine_row(y, row)
+/// makes.
 template <class FineRow>
 void restrict_broken(const Level& level, Halving half, int Y0, int Y1, Grid<float>& coarse,
                      const FineRow& fine_row) {
@@ -393,8 +396,8 @@ void add_coarse_row(const Level& fine, Halving half, int Y, int coarse_cols, Spa
 
 }  // namespace
 
-DEM_CLONES void apply_row(const RowStencil<float>& A, const float* const* u, const float* w,
-                          const float* dinv, Span span, int cols, float* out) {
+DEM_VECTORISED void apply_row(const RowStencil<float>& A, const float* const* u, const float* w,
+                              const float* dinv, Span span, int cols, float* out) {
   const float* here = u[3];
   if (w)
     for_span(A, u, span, cols, [=](int x, float Au) DEM_INLINE { out[x] = Au + w[x] * here[x]; });
@@ -403,8 +406,9 @@ DEM_CLONES void apply_row(const RowStencil<float>& A, const float* const* u, con
   keep_free(dinv, span, out);
 }
 
-DEM_CLONES void residual_row(const RowStencil<double>& A, const double* const* x, const float* f,
-                             const float* w, const float* dinv, Span span, int cols, float* out) {
+DEM_VECTORISED void residual_row(const RowStencil<double>& A, const double* const* x,
+                                 const float* f, const float* w, const float* dinv, Span span,
+                                 int cols, float* out) {
   const double* here = x[3];
   if (w)
     for_span(A, x, span, cols, [=](int i, double Ax) DEM_INLINE {
@@ -690,4 +694,4 @@ void Multigrid::cycle(std::size_t l, const Grid<float>& b) {
   });
 }
 
-}  // namespace dem
+}  // namespace dem::spline

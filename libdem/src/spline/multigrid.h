@@ -9,7 +9,7 @@
 #include "spline/grid.h"
 #include "spline/springs.h"
 
-namespace dem {
+namespace dem::spline {
 
 /// One grid of the hierarchy: the matrix A + diag(w) on its free cells.
 struct Level {
@@ -110,4 +110,4 @@ void apply_row(const RowStencil<float>& A, const float* const* u, const float* w
 void residual_row(const RowStencil<double>& A, const double* const* x, const float* f,
                   const float* w, const float* dinv, Span span, int cols, float* out);
 
-}  // namespace dem
+}  // namespace dem::spline

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace dem {
+namespace dem::spline {
 namespace {
 
 struct Bounds {
@@ -72,4 +72,4 @@ double overshoot(const Grid<double>& surface, const Mask& known,
   return ranges > 0 ? std::sqrt(outside / ranges) : 0;
 }
 
-}  // namespace dem
+}  // namespace dem::spline

@@ -5,7 +5,7 @@
 #include "dem/raster.h"
 #include "spline/grid.h"
 
-namespace dem {
+namespace dem::spline {
 
 /// How far the unknown cells of a surface lie outside the range of the known cells near them (about
 /// three times as far as the nearest one): root mean square, as a part of the root mean square of
@@ -15,4 +15,4 @@ namespace dem {
 double overshoot(const Grid<double>& surface, const Mask& known,
                  const Raster<std::uint16_t>& distance);
 
-}  // namespace dem
+}  // namespace dem::spline

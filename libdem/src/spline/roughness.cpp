@@ -6,7 +6,8 @@
 #include "dem/mcmd.h"
 #include "numeric/parallel.h"
 
-namespace dem {
+namespace dem::spline {
+using namespace numeric;
 namespace {
 
 constexpr int block = 8;
@@ -89,4 +90,4 @@ double Roughness::at(int col, int row) const {
   return std::exp(0.5 * ((1 - v) * top + v * bottom));
 }
 
-}  // namespace dem
+}  // namespace dem::spline

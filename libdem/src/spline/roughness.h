@@ -6,7 +6,7 @@
 #include "dem/run.h"
 #include "spline/grid.h"
 
-namespace dem {
+namespace dem::spline {
 
 class Roughness {
  public:
@@ -23,4 +23,4 @@ class Roughness {
   Raster<float> log_;  // by block: 2 log of what at() returns
 };
 
-}  // namespace dem
+}  // namespace dem::spline

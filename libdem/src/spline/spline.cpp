@@ -9,6 +9,7 @@
 
 #include "dem/breaklines.h"
 #include "dem/mcmd.h"
+#include "numeric/distance.h"
 #include "numeric/parallel.h"
 #include "spline/overshoot.h"
 #include "spline/roughness.h"
@@ -17,6 +18,8 @@
 #include "spline/spline_solver.h"
 
 namespace dem {
+using namespace numeric;
+using namespace spline;
 namespace {
 
 constexpr double two_pi = 2 * std::numbers::pi;
@@ -42,10 +45,10 @@ void for_known(const Dem& dem, const Each& each) {
   }
 }
 
-/// The plane that the membrane pulls to: the least-squares plane of the known cells as far as they are
-/// one. Its slopes shrink with R^2, the part of the variance that it explains, from whole at 1 to
-/// none at 0.5: else a mountain on one side of a basin would tilt the basin. Cells on a line leave
-/// the slope across it open: 0.
+/// The plane that the membrane pulls to: the least-squares plane of the known cells as far as they
+/// are one. Its slopes shrink with R^2, the part of the variance that it explains, from whole at 1
+/// to none at 0.5: else a mountain on one side of a basin would tilt the basin. Cells on a line
+/// leave the slope across it open: 0.
 Plane fit_plane(const Dem& dem) {
   double n = 0, x_sum = 0, y_sum = 0, z_sum = 0;
   for_known(dem, [&](int x, int y, double z) {
@@ -262,10 +265,10 @@ SolveLimits coarser(SolveLimits limits, double times) {
 
 /// Sigma and the realisation asked for: the latter is added to x.
 void sample(const Dem& dem, const SplineOptions& options, const ChosenSprings& chosen,
-            const Springs& springs, SplineSolver& solver, Grid<double>& x, Filled& filled,
+            const Springs& springs, SplineSolver& solver, Grid<double>& x, SplineFilled& filled,
             const Run& run) {
   Simulation simulation(solver, springs, options.seed);
-  const auto distance = distances_to_known(dem.known);
+  const auto distance = chamfer_distances(dem.known);
   Uncertainty uncertainty{spring_scale(springs, x, dem),
                           all_whole_metres(dem) ? 1 / 12. : 0,
                           chosen.contour_step_m,
@@ -288,6 +291,7 @@ void sample(const Dem& dem, const SplineOptions& options, const ChosenSprings& c
   // A little above 0.68: what must be filled is harder than what could be hidden, most of all in a
   // small window.
   const auto [one, two] = calibrate(uncertainty, chosen.held_out, chosen.as_usual ? 0.79 : 0.72);
+  filled.scale_m = uncertainty.scale;
   filled.report.push_back({"scale", uncertainty.scale, "m"});
   filled.report.push_back({"inside_1_sigma", one, ""});
   filled.report.push_back({"inside_2_sigma", two, ""});
@@ -312,8 +316,8 @@ void sample(const Dem& dem, const SplineOptions& options, const ChosenSprings& c
   }
 }
 
-/// Shortens L1 while the springs shoot over the gaps. Hidden cells cannot tell: where only the steep
-/// cells are known, those beside the gaps are steep too, and the gaps are flat.
+/// Shortens L1 while the springs shoot over the gaps. Hidden cells cannot tell: where only the
+/// steep cells are known, those beside the gaps are steep too, and the gaps are flat.
 void soften_overshooting(SplineOptions& options, const Dem& dem, const Raster<float>& noise,
                          double X, const Grid<double>& start, const Raster<std::uint16_t>& distance,
                          const Run& run) {
@@ -329,7 +333,8 @@ void soften_overshooting(SplineOptions& options, const Dem& dem, const Raster<fl
   }
 }
 
-Filled solve(const Dem& dem, const Raster<float>& noise, SplineOptions options, const Run& run) {
+SplineFilled solve(const Dem& dem, const Raster<float>& noise, SplineOptions options,
+                   const Run& run) {
   const double X = squared_aspect(dem.spacing);
   const Plane plane = fit_plane(dem);
   ChosenSprings chosen;
@@ -339,7 +344,7 @@ Filled solve(const Dem& dem, const Raster<float>& noise, SplineOptions options, 
     const Dem flat = detrended(dem, plane);
     x = above_plane(dem, flat, plane, run.part(0, 0.05));
     if (options.parameters == SplineParameters::automatic || options.adaptive) {
-      distance = distances_to_known(dem.known);
+      distance = chamfer_distances(dem.known);
       chosen.layout = layout_of(dem, distance);
       if (options.parameters == SplineParameters::automatic)
         chosen = choose_springs(flat, chosen.layout, distance, X,
@@ -358,7 +363,7 @@ Filled solve(const Dem& dem, const Raster<float>& noise, SplineOptions options, 
   distance = {};
 
   Solved solved;
-  Filled filled;
+  SplineFilled filled;
   const Springs springs = springs_of(options, X, dem.size());
   {
     Data data = make_data(dem, noise, options.nugget, x);
@@ -399,6 +404,9 @@ Filled solve(const Dem& dem, const Raster<float>& noise, SplineOptions options, 
                                ? dem.z(col, row)
                                : float(x.row(row)[col] + plane.at(col, row));
   });
+  filled.L1_rows = options.L1_rows;
+  filled.L3_rows = options.L3_rows;
+  filled.fourth_order = options.fourth_order;
   filled.report.insert(filled.report.begin(), {{"iterations", double(solved.iterations), ""},
                                                {"converged", solved.converged ? 1. : 0., ""},
                                                {"estimated_error", solved.estimated_error_m, "m"},
@@ -416,7 +424,8 @@ Filled solve(const Dem& dem, const Raster<float>& noise, SplineOptions options, 
 
 /// What breaklines close off without data gets the surface that goes on from around, as though
 /// there were no lines.
-Filled solve_closed_off(const Dem& dem, Filled filled, SplineOptions options, const Run& run) {
+SplineFilled solve_closed_off(const Dem& dem, SplineFilled filled, SplineOptions options,
+                              const Run& run) {
   const Mask closed = cells_closed_off(dem.known, dem.breaks);
   const std::size_t cells = count(closed);
   filled.report.push_back({"closed_off", double(cells), ""});
@@ -426,11 +435,9 @@ Filled solve_closed_off(const Dem& dem, Filled filled, SplineOptions options, co
   around.z = filled.z;
   for (std::size_t i = 0; i < closed.cells().size(); ++i)
     around.known.cells()[i] = !closed.cells()[i];
-  for (const Figure& figure : filled.report) {
-    if (figure.name == "L1") options.L1_rows = figure.value;
-    if (figure.name == "L3") options.L3_rows = figure.value;
-    if (figure.name == "fourth_order") options.fourth_order = figure.value != 0;
-  }
+  options.L1_rows = filled.L1_rows;
+  options.L3_rows = filled.L3_rows;
+  options.fourth_order = filled.fourth_order;
   options.parameters = SplineParameters::manual;
   options.adaptive = options.smooth_known = false;
   options.nugget = 0;
@@ -503,25 +510,30 @@ std::vector<Field> fields(SplineOptions& o) {
   };
 }
 
-Filled fill_spline(const Dem& dem, const SplineOptions& options, const Run& run) {
-  return fill_spline(dem, Raster<float>(), options, run);
-}
-
-Filled fill_spline(const Dem& dem, const Raster<float>& noise, const SplineOptions& given,
-                   const Run& run) {
-  check_fillable(dem);
-  SplineOptions options = given;
-  check(fields(options));
-  if (!noise.empty() && noise.size() != dem.size())
-    throw std::invalid_argument(fmt::format("noise is {} x {}; must be {} x {} as the dem",
-                                            noise.cols(), noise.rows(), dem.size().cols,
-                                            dem.size().rows));
+void check_settings(const SplineOptions& options) {
+  check_options(options);
   const SplineOptions usual;
   if (options.parameters == SplineParameters::automatic &&
       (options.L1_rows != usual.L1_rows || options.L3_rows != usual.L3_rows ||
        options.fourth_order != usual.fourth_order))
     throw std::invalid_argument(
         "L1, L3 and fourth_order are chosen from the DEM; to set them, set parameters = manual");
+}
+
+bool gives_sigma(const SplineOptions& options) { return options.sigma != SplineSigma::none; }
+
+SplineFilled fill_spline(const Dem& dem, const SplineOptions& options, const Run& run) {
+  return fill_spline(dem, Raster<float>(), options, run);
+}
+
+SplineFilled fill_spline(const Dem& dem, const Raster<float>& noise, const SplineOptions& options,
+                         const Run& run) {
+  check_fillable(dem);
+  check_settings(options);
+  if (!noise.empty() && noise.size() != dem.size())
+    throw std::invalid_argument(fmt::format("noise is {} x {}; must be {} x {} as the dem",
+                                            noise.cols(), noise.rows(), dem.size().cols,
+                                            dem.size().rows));
   return with_threads(run.threads, [&] {
     if (dem.breaks.empty()) return solve(dem, noise, options, run);
     return solve_closed_off(dem, solve(dem, noise, options, run.part(0, 0.9)), options,

@@ -3,16 +3,18 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
 #include "dem/breaklines.h"
 #include "dem/mcmd.h"
+#include "numeric/distance.h"
 #include "numeric/lie_together.h"
 #include "numeric/parallel.h"
 #include "numeric/random.h"
+#include "numeric/union_find.h"
 #include "spline/spline_solver.h"
 
-namespace dem {
+namespace dem::spline {
+using namespace numeric;
 namespace {
 
 constexpr std::uint64_t seed = 20070;
@@ -49,7 +51,7 @@ void hide(Trial& trial, int col, int row) {
 std::vector<HeldOut> held_out(const std::vector<Trial>& trials) {
   std::vector<HeldOut> all;
   for (const Trial& t : trials) {
-    const auto distance = distances_to_known(t.dem.known);
+    const auto distance = chamfer_distances(t.dem.known);
     for (const Hidden& h : t.hidden)
       all.push_back({float(t.x.row(h.row)[h.col] - h.z), distance(h.col, h.row), t.col + h.col,
                      t.row + h.row});
@@ -349,25 +351,15 @@ double contour_step(const Dem& dem) {
 /// The part of the unknown cells (in runs of 20 and more) whose run has a rim within one step.
 double part_between_two_lines(const Dem& dem, double step) {
   const Size size = dem.size();
-  std::vector<std::uint32_t> parent(size.cells());
-  std::iota(parent.begin(), parent.end(), 0u);
-  const auto root = [&](std::uint32_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
-  const auto join = [&](std::uint32_t a, std::uint32_t b) {
-    a = root(a);
-    b = root(b);
-    parent[std::max(a, b)] = std::min(a, b);
-  };
+  UnionFind<std::uint32_t> gaps(size.cells());
   const auto index = [&](int x, int y) {
     return std::uint32_t(y) * std::uint32_t(size.cols) + std::uint32_t(x);
   };
   for (int y = 0; y < size.rows; ++y)
     for (int x = 0; x < size.cols; ++x) {
       if (dem.known(x, y)) continue;
-      if (x > 0 && !dem.known(x - 1, y)) join(index(x, y), index(x - 1, y));
-      if (y > 0 && !dem.known(x, y - 1)) join(index(x, y), index(x, y - 1));
+      if (x > 0 && !dem.known(x - 1, y)) gaps.join(index(x, y), index(x - 1, y));
+      if (y > 0 && !dem.known(x, y - 1)) gaps.join(index(x, y), index(x, y - 1));
     }
   struct Run {
     float low = std::numeric_limits<float>::infinity(),
@@ -378,7 +370,7 @@ double part_between_two_lines(const Dem& dem, double step) {
   for (int y = 0; y < size.rows; ++y)
     for (int x = 0; x < size.cols; ++x) {
       if (dem.known(x, y)) continue;
-      Run& run = runs[root(index(x, y))];
+      Run& run = runs[gaps.root(index(x, y))];
       ++run.cells;
       constexpr int sides[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
       for (const auto& [dx, dy] : sides)
@@ -397,33 +389,6 @@ double part_between_two_lines(const Dem& dem, double step) {
 }
 
 }  // namespace
-
-Raster<std::uint16_t> distances_to_known(const Mask& known) {
-  constexpr int far = 65535;
-  const Size size = known.size();
-  Raster<std::uint16_t> d(size);
-  // Two sweeps; each cell looks at the half of its neighbours that the sweep has passed.
-  constexpr struct {
-    int dx, dy, length;
-  } steps[] = {{-1, 0, 5},   {0, -1, 5},  {-1, -1, 7},  {1, -1, 7},
-               {-2, -1, 11}, {2, -1, 11}, {-1, -2, 11}, {1, -2, 11}};
-  const auto relax = [&](int x, int y, int sign) {
-    int best = d(x, y);
-    for (const auto& [dx, dy, length] : steps)
-      if (d.contains(x + sign * dx, y + sign * dy))
-        best = std::min(best, d(x + sign * dx, y + sign * dy) + length);
-    d(x, y) = std::uint16_t(best);
-  };
-  for (int y = 0; y < size.rows; ++y)
-    for (int x = 0; x < size.cols; ++x) {
-      d(x, y) = known(x, y) ? 0 : std::uint16_t(far);
-      if (d(x, y)) relax(x, y, 1);
-    }
-  for (int y = size.rows; y-- > 0;)
-    for (int x = size.cols; x-- > 0;)
-      if (d(x, y)) relax(x, y, -1);
-  return d;
-}
 
 Layout layout_of(const Dem& dem, const Raster<std::uint16_t>& distance) {
   const double cells = double(dem.size().cells()), known = double(count(dem.known));
@@ -461,4 +426,4 @@ ChosenSprings choose_springs(const Dem& dem, Layout layout, const Raster<std::ui
   return {};
 }
 
-}  // namespace dem
+}  // namespace dem::spline

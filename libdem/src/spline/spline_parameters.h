@@ -5,7 +5,7 @@
 #include "dem/dem.h"
 #include "dem/run.h"
 
-namespace dem {
+namespace dem::spline {
 
 /// How the known cells lie.
 enum class Layout { scattered, clustered, contours };
@@ -29,21 +29,20 @@ struct ChosenSprings {
   bool as_usual = false;          ///< nothing was tried: a small window around holes
 };
 
-/// Distances (chamfer 5-7-11, in fifths of a cell, at most 65535) of all cells to the nearest known.
-Raster<std::uint16_t> distances_to_known(const Mask& known);
-
 /// Tells apart samples that lie at random, samples that leave large gaps, and contour lines.
-/// Method: mean distance of unknown cells to data, against that of random samples as dense; contours
+/// Method: mean distance of unknown cells to data, against that of random samples as dense;
+/// contours
 ///         are lines, and gaps whose rim spans at most one step of the values.
 Layout layout_of(const Dem& dem, const Raster<std::uint16_t>& distance);
 
 /// Chooses the springs. `dem`: heights above their plane, 0 where unknown. X = (dy / dx)^2.
-/// Method: scattered: a tenth (sparse ones: a fifth) of the known cells hidden in one window of each
+/// Method: scattered: a tenth (sparse ones: a fifth) of the known cells hidden in one window of
+/// each
 ///         quadrant. Clustered: disks as wide as the gaps, cut beside them, each in a window of its
-///         own; the mean of the logarithms of their errors. Both with a small charge for leaving the
-///         usual springs. Fewer than 2^15 cells of which three fifths are known, as around a hole,
-///         take the usual springs; their hidden cells are looked at when `errors_wanted`.
+///         own; the mean of the logarithms of their errors. Both with a small charge for leaving
+///         the usual springs. Fewer than 2^15 cells of which three fifths are known, as around a
+///         hole, take the usual springs; their hidden cells are looked at when `errors_wanted`.
 ChosenSprings choose_springs(const Dem& dem, Layout layout, const Raster<std::uint16_t>& distance,
                              double X, bool errors_wanted, const Run& run);
 
-}  // namespace dem
+}  // namespace dem::spline

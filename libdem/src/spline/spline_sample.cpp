@@ -6,7 +6,8 @@
 #include "numeric/parallel.h"
 #include "numeric/random.h"
 
-namespace dem {
+namespace dem::spline {
+using namespace numeric;
 namespace {
 
 constexpr int difference[4][4] = {{1, 0, 0, 0}, {-1, 1, 0, 0}, {1, -2, 1, 0}, {-1, 3, -3, 1}};
@@ -118,4 +119,4 @@ double DistanceLaw::variance(double fifths) const {
   return v0;
 }
 
-}  // namespace dem
+}  // namespace dem::spline

@@ -8,7 +8,7 @@
 #include "spline/grid.h"
 #include "spline/springs.h"
 
-namespace dem {
+namespace dem::spline {
 
 /// Right-hand side whose solution, 0 at fixed cells, is one draw from the springs' distribution:
 /// each spring pulled by a standard normal number, and each data weight of `w` (may be empty) by
@@ -34,4 +34,4 @@ class DistanceLaw {
   std::array<double, bins> sum_{}, count_{}, mean_{}, centre_{};
 };
 
-}  // namespace dem
+}  // namespace dem::spline

@@ -5,7 +5,8 @@
 
 #include "numeric/parallel.h"
 
-namespace dem {
+namespace dem::spline {
+using namespace numeric;
 namespace {
 
 constexpr int row_grain = 16;
@@ -22,7 +23,7 @@ struct Lanes {
   }
 };
 
-DEM_CLONES double dot_span(const float* a, const float* b, Span span) {
+DEM_VECTORISED double dot_span(const float* a, const float* b, Span span) {
   Lanes ab;
   int x = span.begin;
   for (; x + 8 <= span.end; x += 8)
@@ -32,8 +33,8 @@ DEM_CLONES double dot_span(const float* a, const float* b, Span span) {
 }
 
 /// p.q, r.p and p.p in one pass.
-DEM_CLONES void products_span(const float* p, const float* q, const float* r, Span span,
-                              double* out) {
+DEM_VECTORISED void products_span(const float* p, const float* q, const float* r, Span span,
+                                  double* out) {
   Lanes pq, rp, pp;
   int x = span.begin;
   for (; x + 8 <= span.end; x += 8)
@@ -54,12 +55,12 @@ DEM_CLONES void products_span(const float* p, const float* q, const float* r, Sp
   out[2] += pp.sum();
 }
 
-DEM_CLONES void direction_span(const float* s, float beta, Span span, float* p) {
+DEM_VECTORISED void direction_span(const float* s, float beta, Span span, float* p) {
   DEM_INDEPENDENT
   for (int x = span.begin; x < span.end; ++x) p[x] = s[x] + beta * p[x];
 }
 
-DEM_CLONES void advance_span(const float* p, double alpha, Span span, double* x) {
+DEM_VECTORISED void advance_span(const float* p, double alpha, Span span, double* x) {
   DEM_INDEPENDENT
   for (int i = span.begin; i < span.end; ++i) x[i] += alpha * double(p[i]);
 }
@@ -208,4 +209,4 @@ Solved SplineSolver::solve(Grid<double>& x, const Grid<float>* f, const SolveLim
   return solved;
 }
 
-}  // namespace dem
+}  // namespace dem::spline

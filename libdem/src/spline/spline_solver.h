@@ -5,7 +5,7 @@
 #include "spline/multigrid.h"
 #include "spline/tensor.h"
 
-namespace dem {
+namespace dem::spline {
 
 struct SolveLimits {
   double tolerance_m = 0;         ///< stop when the estimated RMS error is at most this
@@ -54,4 +54,4 @@ class SplineSolver {
   Grid<float> r_, p_, q_;
 };
 
-}  // namespace dem
+}  // namespace dem::spline

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace dem {
+namespace dem::spline {
 namespace {
 
 // Forward differences of order 0 to 3.
@@ -107,4 +107,4 @@ double Stencil::largest_eigenvalue() const {
   return diagonal > 0 ? largest / diagonal : 1;
 }
 
-}  // namespace dem
+}  // namespace dem::spline

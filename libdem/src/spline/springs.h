@@ -7,7 +7,7 @@
 
 #include "dem/raster.h"
 
-namespace dem {
+namespace dem::spline {
 
 /// Weights c[i][j] of ||Dx^i Dy^j z||^2, 1 <= i + j <= 3. Dx and Dy are forward differences; only
 /// differences that lie wholly inside the grid are summed.
@@ -81,4 +81,4 @@ class Stencil {
   std::vector<RowStencil<double>> exact_rows_;
 };
 
-}  // namespace dem
+}  // namespace dem::spline

@@ -6,7 +6,8 @@
 #include "numeric/parallel.h"
 #include "spline/multigrid.h"
 
-namespace dem {
+namespace dem::spline {
+using namespace numeric;
 namespace {
 
 constexpr double mix = 0.95;         // the rest is C_iso
@@ -29,8 +30,8 @@ DEM_INLINE inline void bends(const T* up, const T* here, const T* down, float X,
 }
 
 /// The six products h h^T of one row.
-DEM_CLONES void products_row(const double* up, const double* here, const double* down, float X,
-                             float root_2X, int begin, int end, float* const* out) {
+DEM_VECTORISED void products_row(const double* up, const double* here, const double* down, float X,
+                                 float root_2X, int begin, int end, float* const* out) {
   float *p0 = out[0], *p1 = out[1], *p2 = out[2], *p3 = out[3], *p4 = out[4], *p5 = out[5];
   DEM_INDEPENDENT
   for (int x = begin; x < end; ++x) {
@@ -45,14 +46,14 @@ DEM_CLONES void products_row(const double* up, const double* here, const double*
   }
 }
 
-DEM_CLONES void add_scaled(const float* in, float weight, int begin, int end, float* out) {
+DEM_VECTORISED void add_scaled(const float* in, float weight, int begin, int end, float* out) {
   DEM_INDEPENDENT
   for (int x = begin; x < end; ++x) out[x] += weight * in[x];
 }
 
 /// out = sum over |k| <= radius of weight[|k|] in[x + k].
-DEM_CLONES void blur_row(const float* in, const float* weight, int radius, int begin, int end,
-                         float* out) {
+DEM_VECTORISED void blur_row(const float* in, const float* weight, int radius, int begin, int end,
+                             float* out) {
   for (int x = begin; x < end; ++x) out[x] = weight[0] * in[x];
   for (int k = 1; k <= radius; ++k) {
     const float w = weight[k];
@@ -62,8 +63,8 @@ DEM_CLONES void blur_row(const float* in, const float* weight, int radius, int b
 }
 
 /// W - 1 of one row from the blurred products.
-DEM_CLONES void weights_row(const float* const* c, float floor, int begin, int end,
-                            Tensor::Weight* const* w) {
+DEM_VECTORISED void weights_row(const float* const* c, float floor, int begin, int end,
+                                Tensor::Weight* const* w) {
   const float *c0 = c[0], *c1 = c[1], *c2 = c[2], *c3 = c[3], *c4 = c[4], *c5 = c[5];
   Tensor::Weight *w0 = w[0], *w1 = w[1], *w2 = w[2], *w3 = w[3], *w4 = w[4], *w5 = w[5];
   DEM_INDEPENDENT
@@ -105,14 +106,14 @@ DEM_INLINE inline void moments(const T* up, const T* here, const T* down,
     twist[x] = step_twist * (xx_xy * h[0] + xy_yy * h[2]);
   }
 }
-DEM_CLONES void moments_row(const float* up, const float* here, const float* down,
-                            const Tensor::Weight* const* w, float X, float root_2X, Span span,
-                            float* along_x, float* along_y, float* twist) {
+DEM_VECTORISED void moments_row(const float* up, const float* here, const float* down,
+                                const Tensor::Weight* const* w, float X, float root_2X, Span span,
+                                float* along_x, float* along_y, float* twist) {
   moments(up, here, down, w, X, root_2X, span, along_x, along_y, twist);
 }
-DEM_CLONES void moments_row(const double* up, const double* here, const double* down,
-                            const Tensor::Weight* const* w, float X, float root_2X, Span span,
-                            float* along_x, float* along_y, float* twist) {
+DEM_VECTORISED void moments_row(const double* up, const double* here, const double* down,
+                                const Tensor::Weight* const* w, float X, float root_2X, Span span,
+                                float* along_x, float* along_y, float* twist) {
   moments(up, here, down, w, X, root_2X, span, along_x, along_y, twist);
 }
 
@@ -128,21 +129,23 @@ DEM_INLINE inline void corners(const T* here, const T* below, const float* twist
     out[x] = (twist[x] + twist[x + 1]) + (twist_below[x] + twist_below[x + 1]) + weight * q;
   }
 }
-DEM_CLONES void corners_row(const float* here, const float* below, const float* twist,
-                            const float* twist_below, const Tensor::Weight* w,
-                            const Tensor::Weight* w_below, float half_X, Span span, float* out) {
+DEM_VECTORISED void corners_row(const float* here, const float* below, const float* twist,
+                                const float* twist_below, const Tensor::Weight* w,
+                                const Tensor::Weight* w_below, float half_X, Span span,
+                                float* out) {
   corners(here, below, twist, twist_below, w, w_below, half_X, span, out);
 }
-DEM_CLONES void corners_row(const double* here, const double* below, const float* twist,
-                            const float* twist_below, const Tensor::Weight* w,
-                            const Tensor::Weight* w_below, float half_X, Span span, float* out) {
+DEM_VECTORISED void corners_row(const double* here, const double* below, const float* twist,
+                                const float* twist_below, const Tensor::Weight* w,
+                                const Tensor::Weight* w_below, float half_X, Span span,
+                                float* out) {
   corners(here, below, twist, twist_below, w, w_below, half_X, span, out);
 }
 
 /// What the moments around a row pull its free cells with.
-DEM_CLONES void pull_row(const float* along_x, const float* y_up, const float* y_here,
-                         const float* y_down, const float* corner_up, const float* corner_down,
-                         float sign, const float* dinv, Span span, float* out) {
+DEM_VECTORISED void pull_row(const float* along_x, const float* y_up, const float* y_here,
+                             const float* y_down, const float* corner_up, const float* corner_down,
+                             float sign, const float* dinv, Span span, float* out) {
   DEM_INDEPENDENT
   for (int x = span.begin; x < span.end; ++x) {
     const float straight =
@@ -325,4 +328,4 @@ void Tensor::add(const Grid<double>& u, float sign, const Grid<float>& dinv,
   add_to(u, sign, dinv, out);
 }
 
-}  // namespace dem
+}  // namespace dem::spline

@@ -8,7 +8,7 @@
 
 #include "spline/grid.h"
 
-namespace dem {
+namespace dem::spline {
 
 /// The difference of the local energy of second order from the plate's, in orthonormal coordinates
 /// h = (X zxx, sqrt(2 X) zxy, zyy):  h^T (W - 1) h  for each cell whose 3 x 3 neighbours exist. zxy
@@ -42,4 +42,4 @@ class Tensor {
   std::array<Grid<Weight>, 6> w_;  ///< W - 1: 11, 12, 13, 22, 23, 33; 0 on the rim
 };
 
-}  // namespace dem
+}  // namespace dem::spline

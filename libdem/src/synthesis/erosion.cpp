@@ -13,9 +13,10 @@
 #include <stdexcept>
 
 #include "numeric/parallel.h"
-#include "numeric/vectorised.h"
+#include "numeric/simd.h"
 
 namespace dem {
+using namespace numeric;
 namespace {
 
 // What is outside has NaN as height: above(NaN) is 0, so nothing flows there, nothing comes from
@@ -79,8 +80,8 @@ DEM_VECTORISED void add_rows(In a, In w, int n, Out sum) {
   for (int c = 0; c < n; ++c) sum[c] = a[c] + w[c];
 }
 
-/// How far the surface lies above its lower neighbours, and below its higher ones, summed, each over
-/// its distance.
+/// How far the surface lies above its lower neighbours, and below its higher ones, summed, each
+/// over its distance.
 DEM_VECTORISED void sum_slopes(In up, In here, In down, const Rates& r, int n, Out slope,
                                Out rise) {
   const double gx = r.gx, gy = r.gy, gd = r.gd;

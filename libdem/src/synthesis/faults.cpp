@@ -11,9 +11,10 @@
 
 #include "numeric/parallel.h"
 #include "numeric/random.h"
-#include "numeric/vectorised.h"
+#include "numeric/simd.h"
 
 namespace dem {
+using namespace numeric;
 namespace {
 
 // ---- Random values, drawn one after another

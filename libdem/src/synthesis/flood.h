@@ -11,10 +11,10 @@
 #include "dem/raster.h"
 #include "dem/run.h"
 
-namespace dem {
+namespace dem::synthesis {
 
-/// Cells by key, lowest first, equal keys by index. Keys between `low` and `high` cost O(1), as long
-/// as none is pushed that is lower than the last one popped: only the bucket in use is sorted.
+/// Cells by key, lowest first, equal keys by index. Keys between `low` and `high` cost O(1), as
+/// long as none is pushed that is lower than the last one popped: only the bucket in use is sorted.
 class CellQueue {
  public:
   struct Item {
@@ -94,4 +94,4 @@ inline void fill_depressions(Raster<float>& z, Mask done, float step, const Run&
   }
 }
 
-}  // namespace dem
+}  // namespace dem::synthesis

@@ -6,7 +6,7 @@
 #include "dem/networks.h"
 #include "synthesis/paths.h"
 
-namespace dem {
+namespace dem::synthesis {
 
 /// The map, and lengths on it as parts of its longer side.
 struct Map {
@@ -62,4 +62,4 @@ std::vector<River> grow_rivers(const Map& map, const Ground& ground,
                                const std::vector<RidgeCell>& ridges, const NetworkOptions& options,
                                const Run& run);
 
-}  // namespace dem
+}  // namespace dem::synthesis

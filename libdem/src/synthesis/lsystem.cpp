@@ -14,6 +14,7 @@
 #include "synthesis/paths.h"
 
 namespace dem {
+using namespace synthesis;
 namespace {
 
 struct Turtle {

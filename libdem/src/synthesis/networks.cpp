@@ -13,6 +13,7 @@
 #include "synthesis/growth.h"
 
 namespace dem {
+using namespace synthesis;
 namespace {
 
 constexpr float inf = std::numeric_limits<float>::infinity();

@@ -9,9 +9,10 @@
 
 #include "numeric/parallel.h"
 #include "numeric/random.h"
-#include "numeric/vectorised.h"
+#include "numeric/simd.h"
 
 namespace dem {
+using namespace numeric;
 namespace {
 
 // ---- Gradient noise

@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-namespace dem {
+namespace dem::synthesis {
 
 void check_map(Size size, Spacing spacing, int least, std::string_view what) {
   constexpr std::size_t most = std::size_t{1} << 28;
@@ -20,4 +20,4 @@ void check_map(Size size, Spacing spacing, int least, std::string_view what) {
           fmt::format("spacing = {} x {} m; must be above 0", spacing.dx_m, spacing.dy_m));
 }
 
-}  // namespace dem
+}  // namespace dem::synthesis

@@ -12,7 +12,7 @@
 #include "dem/dem.h"
 #include "numeric/random.h"
 
-namespace dem {
+namespace dem::synthesis {
 
 /// Throws std::invalid_argument unless a map has from least x least to 2^28 cells, of a positive
 /// size. `what` is to be made on it.
@@ -37,19 +37,21 @@ inline Point turned(Point a, double half_tangent) {
 }
 
 /// Uniform in [0, 1).
-inline double uniform(Sequence& random) { return (signed_uniform(random.bits()) + 1) / 2; }
+inline double uniform(numeric::Sequence& random) {
+  return (numeric::signed_uniform(random.bits()) + 1) / 2;
+}
 
 /// Mean 0, variance 1: the sum of twelve uniform numbers.
-inline double gaussian(Sequence& random) {
+inline double gaussian(numeric::Sequence& random) {
   double sum = 0;
-  for (int i = 0; i < 12; ++i) sum += signed_uniform(random.bits());
+  for (int i = 0; i < 12; ++i) sum += numeric::signed_uniform(random.bits());
   return sum / 2;
 }
 
 /// A direction, each equally likely.
-inline Point random_direction(Sequence& random) {
+inline Point random_direction(numeric::Sequence& random) {
   for (;;) {
-    const Point p{signed_uniform(random.bits()), signed_uniform(random.bits())};
+    const Point p{numeric::signed_uniform(random.bits()), numeric::signed_uniform(random.bits())};
     if (const double r = length(p); r > 0.01 && r < 1) return (1 / r) * p;
   }
 }
@@ -83,7 +85,8 @@ inline std::vector<double> brownian_path(int levels, double end, double scale, d
   for (int level = 0; level < levels; ++level, scale *= ratio) {
     const int step = n >> level;
     for (int i = step / 2; i < n; i += step) {
-      Sequence random(seed ^ mix(stream), random_bits(seed, stream, level, i / step));
+      numeric::Sequence random(seed ^ numeric::mix(stream),
+                               numeric::random_bits(seed, stream, level, i / step));
       path[std::size_t(i)] =
           (path[std::size_t(i - step / 2)] + path[std::size_t(i + step / 2)]) / 2 +
           scale * gaussian(random);
@@ -106,4 +109,4 @@ void walk_line(Cell from, Cell to, Each each) {
     if (!each(Cell{from.col + part(dc, i), from.row + part(dr, i)})) return;
 }
 
-}  // namespace dem
+}  // namespace dem::synthesis

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <limits>
 
+#include "numeric/distance.h"
 #include "synthesis/flood.h"
 #include "synthesis/growth.h"
 
-namespace dem {
+namespace dem::synthesis {
+using namespace numeric;
 namespace {
 
 constexpr std::uint64_t stream_ridges = 0x71d6e001;
@@ -67,48 +69,6 @@ std::vector<RidgeParticle> place_couples(const Map& map, const NetworkOptions& o
   }
   return particles;
 }
-
-/// The lower envelope of parabolas, out[x] = min over p of in[p] + k (x - p)^2, along n values that
-/// lie `stride` apart, in place.
-class Envelope {
- public:
-  explicit Envelope(std::size_t longest) : z_(longest + 1), v_(longest), in_(longest) {}
-
-  void apply(float* values, int n, std::size_t stride, double k) {
-    constexpr double inf = std::numeric_limits<double>::infinity();
-    int top = -1;
-    for (int q = 0; q < n; ++q) {
-      in_[std::size_t(q)] = double(values[std::size_t(q) * stride]);
-      if (in_[std::size_t(q)] == inf) continue;
-      double start = -inf;
-      for (; top >= 0; --top) {
-        start = crossing(v_[std::size_t(top)], q, k);
-        if (start > z_[std::size_t(top)]) break;
-        start = -inf;
-      }
-      v_[std::size_t(++top)] = q;
-      z_[std::size_t(top)] = start;
-    }
-    if (top < 0) return;
-    z_[std::size_t(top) + 1] = inf;
-    for (int q = 0, i = 0; q < n; ++q) {
-      while (z_[std::size_t(i) + 1] < q) ++i;
-      const double d = q - v_[std::size_t(i)];
-      values[std::size_t(q) * stride] = float(in_[std::size_t(v_[std::size_t(i)])] + k * d * d);
-    }
-  }
-
- private:
-  /// Where the parabola of q comes below that of p.
-  double crossing(int p, int q, double k) const {
-    return ((in_[std::size_t(q)] - in_[std::size_t(p)]) / k + double(q) * q - double(p) * p) /
-           (2.0 * (q - p));
-  }
-
-  std::vector<double> z_;  // where each parabola begins to be the lowest
-  std::vector<int> v_;     // whose it is
-  std::vector<double> in_;
-};
 
 /// Means of three in each direction, weights 1 2 1.
 void blur(Raster<float>& z) {
@@ -184,7 +144,8 @@ std::vector<RidgeCell> grow_ridges(const Map& map, const NetworkOptions& o, cons
         p.moving = map.contains(c) && !other(c) && !crosses;
         if (p.moving && owner(c.col, c.row) == 0) {
           owner(c.col, c.row) = std::uint16_t(p.couple + 1);
-          cells.push_back({c, p.fall + way * way / 2, (1 / dem::length(to - from)) * (to - from)});
+          cells.push_back(
+              {c, p.fall + way * way / 2, (1 / synthesis::length(to - from)) * (to - from)});
         }
         p.cell = c;
         return p.moving;
@@ -209,10 +170,17 @@ Ground::Ground(const Map& map, const std::vector<RidgeCell>& ridges, const Netwo
   }
   const double sigma = o.ridge_length * o.ridge_width;
   const double k = node_step * node_step / (2 * sigma * sigma);
-  Envelope envelope(std::size_t(std::max(fall_.cols(), fall_.rows())));
-  for (int row = 0; row < fall_.rows(); ++row) envelope.apply(&fall_(0, row), fall_.cols(), 1, k);
+  Envelope envelope;
+  std::vector<double> line;
+  const auto spread = [&](float* values, int n, std::size_t stride) {
+    line.resize(std::size_t(n));
+    for (std::size_t i = 0; i < line.size(); ++i) line[i] = double(values[i * stride]);
+    envelope.apply(line, k);
+    for (std::size_t i = 0; i < line.size(); ++i) values[i * stride] = float(line[i]);
+  };
+  for (int row = 0; row < fall_.rows(); ++row) spread(&fall_(0, row), fall_.cols(), 1);
   for (int col = 0; col < fall_.cols(); ++col)
-    envelope.apply(&fall_(col, 0), fall_.rows(), std::size_t(fall_.cols()), k);
+    spread(&fall_(col, 0), fall_.rows(), std::size_t(fall_.cols()));
   for (int pass = 0; pass < 3; ++pass) blur(fall_);  // where two cross-sections meet is no crack
 
   depth_ = fall_;
@@ -247,4 +215,4 @@ Point Ground::pull(Point p) const {
                                  std::lerp(d(0, 1) - d(0, 0), d(1, 1) - d(1, 0), at.x)};
 }
 
-}  // namespace dem
+}  // namespace dem::synthesis

@@ -10,6 +10,7 @@
 #include "synthesis/riverland_parts.h"
 
 namespace dem {
+using namespace synthesis;
 namespace {
 
 constexpr float drain_step_m = 0.01F;  // what was dammed up falls by that from cell to cell

@@ -7,7 +7,8 @@
 #include "synthesis/flood.h"
 #include "synthesis/riverland_parts.h"
 
-namespace dem {
+namespace dem::synthesis {
+using namespace numeric;
 namespace {
 
 constexpr std::uint64_t stream_slopes = 0x4e1a0003;
@@ -246,4 +247,4 @@ Raster<float> raise_land(const Country& country, const Water& water, const Valle
   return z;
 }
 
-}  // namespace dem
+}  // namespace dem::synthesis

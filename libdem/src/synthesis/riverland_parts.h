@@ -8,7 +8,7 @@
 #include "dem/riverland.h"
 #include "synthesis/paths.h"
 
-namespace dem {
+namespace dem::synthesis {
 
 /// What the steps share: the painted land, its coast and the size of a cell.
 struct Country {
@@ -85,4 +85,4 @@ Raster<float> fractal_overlay(Size size, int nodes, double H, std::uint64_t seed
 Raster<float> rocky_outcrops(const Country& country, const Raster<float>& overlay,
                              const RiverLandOptions& options);
 
-}  // namespace dem
+}  // namespace dem::synthesis

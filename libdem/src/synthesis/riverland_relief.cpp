@@ -11,7 +11,8 @@
 #include "synthesis/flood.h"
 #include "synthesis/riverland_parts.h"
 
-namespace dem {
+namespace dem::synthesis {
+using namespace numeric;
 namespace {
 
 constexpr std::uint64_t stream_overlay = 0x4e1a0004, stream_ridges = 0x4e1a0005,
@@ -179,4 +180,4 @@ Raster<float> rocky_outcrops(const Country& country, const Raster<float>& overla
   return rocks;
 }
 
-}  // namespace dem
+}  // namespace dem::synthesis

@@ -5,7 +5,8 @@
 
 #include "synthesis/riverland_parts.h"
 
-namespace dem {
+namespace dem::synthesis {
+using namespace numeric;
 namespace {
 
 constexpr std::uint64_t stream_growth = 0x4e1a0001, stream_levels = 0x4e1a0002;
@@ -330,4 +331,4 @@ Water fill_rivers(const Country& country, const UserRidges& ridges,
   return water;
 }
 
-}  // namespace dem
+}  // namespace dem::synthesis

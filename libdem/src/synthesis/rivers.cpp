@@ -5,7 +5,8 @@
 
 #include "synthesis/growth.h"
 
-namespace dem {
+namespace dem::synthesis {
+using namespace numeric;
 namespace {
 
 constexpr std::uint64_t stream_rivers = 0x71d6e002;
@@ -208,4 +209,4 @@ std::vector<River> grow_rivers(const Map& map, const Ground& ground,
   return rivers.kept();
 }
 
-}  // namespace dem
+}  // namespace dem::synthesis

@@ -8,6 +8,8 @@
 #include "synthesis/paths.h"
 
 namespace dem {
+using namespace numeric;
+using namespace synthesis;
 namespace {
 
 constexpr std::uint64_t stream_salt = 0x5a17;

@@ -27,6 +27,15 @@ void check_fillable(const Dem& dem) {
     throw std::invalid_argument("dem has no known cell; at least one is needed");
 }
 
+std::vector<Spacing> spacing_of_rows(const Dem& dem) {
+  const auto rows = std::size_t(dem.z.rows());
+  if (dem.row_spacing.empty()) return std::vector<Spacing>(rows, dem.spacing);
+  if (dem.row_spacing.size() != rows)
+    throw std::invalid_argument(fmt::format(
+        "dem.row_spacing has {} values; must have {}, one a row", dem.row_spacing.size(), rows));
+  return dem.row_spacing;
+}
+
 GeoRef crop(GeoRef ref, const Box& box) {
   auto& at = ref.to_world;
   at[0] += at[1] * box.col + at[2] * box.row;

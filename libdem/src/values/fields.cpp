@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <stdexcept>
+#include <type_traits>
 
 namespace dem {
 namespace {
@@ -20,7 +21,64 @@ bool parse(std::string_view text, T& out) {
   return true;
 }
 
-bool inside(double value, Range range) { return value >= range.min && value <= range.max; }
+bool parse(std::string_view text, std::string& out) {
+  out = text;
+  return true;
+}
+
+bool parse(std::string_view text, bool& out) {
+  out = text == "true";
+  return out || text == "false";
+}
+
+bool inside(double value, Range range) {
+  if (std::isnan(value)) return range.or_nan;
+  return value <= range.max && (range.above_min ? value > range.min : value >= range.min);
+}
+
+template <class T>
+bool is_good(const T& value, Range range) {
+  if constexpr (std::is_same_v<T, std::string>)
+    return true;
+  else
+    return inside(double(value), range);
+}
+
+template <class T>
+constexpr bool is_optional = false;
+template <class T>
+constexpr bool is_optional<std::optional<T>> = true;
+
+/// The type of what an option holds.
+template <class T>
+struct Held {
+  using type = T;
+};
+template <class T>
+struct Held<std::optional<T>> {
+  using type = T;
+};
+
+template <class T>
+const char* type_name() {
+  using Value = typename Held<T>::type;
+  if (std::is_same_v<Value, bool>) return "boolean";
+  if (std::is_same_v<Value, std::string>) return "text";
+  return std::is_floating_point_v<Value> ? "number" : "integer";
+}
+
+/// The range of a value that needs none to be given: an unsigned number tells its own.
+template <class T>
+Range own_range() {
+  return std::is_same_v<typename Held<T>::type, std::uint64_t> ? Range{.min = 0} : Range{};
+}
+
+template <class T>
+std::vector<std::string> own_choices() {
+  using Value = typename Held<T>::type;
+  if (std::is_same_v<Value, bool>) return {"false", "true"};
+  return {};
+}
 
 std::string join(const std::vector<std::string>& words, std::string_view separator) {
   return fmt::format("{}", fmt::join(words, separator));
@@ -28,102 +86,127 @@ std::string join(const std::vector<std::string>& words, std::string_view separat
 
 }  // namespace
 
-Field::Field(std::string name, double& value, Range range, std::string unit, std::string doc)
-    : name_(std::move(name)),
-      unit_(std::move(unit)),
-      doc_(std::move(doc)),
-      range_(range),
-      value_(&value) {}
-
-Field::Field(std::string name, int& value, Range range, std::string unit, std::string doc)
-    : name_(std::move(name)),
-      unit_(std::move(unit)),
-      doc_(std::move(doc)),
-      range_(range),
-      value_(&value) {}
-
-Field::Field(std::string name, std::uint64_t& value, std::string doc)
-    : name_(std::move(name)), doc_(std::move(doc)), value_(&value) {}
-
-Field::Field(std::string name, bool& value, std::string doc)
-    : name_(std::move(name)), doc_(std::move(doc)), choices_{"false", "true"}, value_(&value) {}
-
-std::string Field::type() const {
-  if (std::holds_alternative<double*>(value_)) return "number";
-  if (std::holds_alternative<bool*>(value_)) return "boolean";
-  return std::holds_alternative<Choice>(value_) ? "choice" : "integer";
+template <class T>
+Field::Access Field::access(T& value, Range range) {
+  if constexpr (is_optional<T>) {
+    using Value = typename T::value_type;
+    return {[&value] { return value ? fmt::format("{}", *value) : std::string(); },
+            [&value, range](std::string_view text) {
+              Value read{};
+              if (!text.empty() && (!parse(text, read) || !is_good(read, range))) return false;
+              if (text.empty())
+                value.reset();
+              else
+                value = std::move(read);
+              return true;
+            },
+            [&value, range] { return !value || is_good(*value, range); }};
+  } else {
+    return {[&value] { return fmt::format("{}", value); },
+            [&value, range](std::string_view text) {
+              T read{};
+              if (!parse(text, read) || !is_good(read, range)) return false;
+              value = std::move(read);
+              return true;
+            },
+            [&value, range] { return is_good(value, range); }};
+  }
 }
+
+template <class T>
+Field::Field(std::string name, T& value, Range range, std::string unit, std::string doc)
+    : name_(std::move(name)),
+      type_(type_name<T>()),
+      unit_(std::move(unit)),
+      doc_(std::move(doc)),
+      range_(range),
+      access_(access(value, range)) {}
+template Field::Field(std::string, double&, Range, std::string, std::string);
+template Field::Field(std::string, int&, Range, std::string, std::string);
+template Field::Field(std::string, std::size_t&, Range, std::string, std::string);
+template Field::Field(std::string, std::optional<double>&, Range, std::string, std::string);
+template Field::Field(std::string, std::optional<int>&, Range, std::string, std::string);
+template Field::Field(std::string, std::optional<std::size_t>&, Range, std::string, std::string);
+
+template <class T>
+Field::Field(std::string name, T& value, std::string doc)
+    : name_(std::move(name)),
+      type_(type_name<T>()),
+      doc_(std::move(doc)),
+      choices_(own_choices<T>()),
+      range_(own_range<T>()),
+      access_(access(value, range_)) {}
+template Field::Field(std::string, bool&, std::string);
+template Field::Field(std::string, std::uint64_t&, std::string);
+template Field::Field(std::string, std::string&, std::string);
+template Field::Field(std::string, std::optional<bool>&, std::string);
+template Field::Field(std::string, std::optional<std::uint64_t>&, std::string);
+template Field::Field(std::string, std::optional<std::string>&, std::string);
+
+Field::Field(std::string name, std::vector<std::string> choices, std::string doc, Choice choice)
+    : name_(std::move(name)),
+      type_("choice"),
+      doc_(std::move(doc)),
+      choices_(std::move(choices)),
+      access_{[choice, names = choices_] {
+                const int i = choice.get();
+                if (i == kUnset && choice.may_be_unset) return std::string();
+                return i >= 0 && i < int(names.size()) ? names[std::size_t(i)]
+                                                       : fmt::format("{}", i);
+              },
+              [choice, names = choices_](std::string_view text) {
+                const auto found = std::ranges::find(names, text);
+                const bool unset = text.empty() && choice.may_be_unset;
+                if (found == names.end() && !unset) return false;
+                choice.set(unset ? kUnset : int(found - names.begin()));
+                return true;
+              },
+              [choice, n = int(choices_.size())] {
+                const int i = choice.get();
+                return (i == kUnset && choice.may_be_unset) || (i >= 0 && i < n);
+              }} {}
 
 std::string Field::range() const {
   if (!choices_.empty()) return join(choices_, " | ");
-  if (std::holds_alternative<std::uint64_t*>(value_)) return ">= 0";
+  const char* const open = range_.above_min ? "(" : "[";
+  const char* const more = range_.above_min ? ">" : ">=";
   const bool below = std::isfinite(range_.min), above = std::isfinite(range_.max);
-  if (below && above) return fmt::format("[{}, {}]", range_.min, range_.max);
-  if (below) return fmt::format(">= {}", range_.min);
+  if (below && above) return fmt::format("{}{}, {}]", open, range_.min, range_.max);
+  if (below) return fmt::format("{} {}", more, range_.min);
   return above ? fmt::format("<= {}", range_.max) : "";
 }
 
-std::string Field::text() const {
-  if (auto* v = std::get_if<double*>(&value_)) return fmt::format("{}", **v);
-  if (auto* v = std::get_if<int*>(&value_)) return fmt::format("{}", **v);
-  if (auto* v = std::get_if<std::uint64_t*>(&value_)) return fmt::format("{}", **v);
-  if (auto* v = std::get_if<bool*>(&value_)) return **v ? "true" : "false";
-  return choices_.at(std::size_t(std::get<Choice>(value_).get()));
-}
+std::string Field::text() const { return access_.text(); }
 
 void Field::refuse(std::string_view text) const {
-  std::string what = type() == "integer" ? "a whole number" : "a number";
+  std::string what = type_ == "integer" ? "a whole number" : "a number";
   if (!choices_.empty())
     what = "one of " + join(choices_, ", ");
   else if (!range().empty())
-    what += range()[0] == '[' ? " in " + range() : " " + range();
+    what +=
+        std::isfinite(range_.min) && std::isfinite(range_.max) ? " in " + range() : " " + range();
   throw std::invalid_argument(fmt::format("{} = {}; must be {}", name_, text, what));
 }
 
 void Field::set(std::string_view text) {
-  if (!choices_.empty()) {
-    const auto found = std::ranges::find(choices_, text);
-    if (found == choices_.end()) refuse(text);
-    const int i = int(found - choices_.begin());
-    if (auto* v = std::get_if<bool*>(&value_))
-      **v = i == 1;
-    else
-      std::get<Choice>(value_).set(i);
-  } else if (auto* d = std::get_if<double*>(&value_)) {
-    double value = 0;
-    if (!parse(text, value) || !inside(value, range_)) refuse(text);
-    **d = value;
-  } else if (auto* i = std::get_if<int*>(&value_)) {
-    int value = 0;
-    if (!parse(text, value) || !inside(value, range_)) refuse(text);
-    **i = value;
-  } else if (!parse(text, *std::get<std::uint64_t*>(value_))) {
-    refuse(text);
-  }
+  if (!access_.set(text)) refuse(text);
 }
 
 void Field::check() const {
-  if (auto* d = std::get_if<double*>(&value_)) {
-    if (!inside(**d, range_)) refuse(text());
-  } else if (auto* i = std::get_if<int*>(&value_)) {
-    if (!inside(**i, range_)) refuse(text());
-  } else if (auto* c = std::get_if<Choice>(&value_)) {
-    const int at = c->get();
-    if (at < 0 || at >= int(choices_.size())) refuse(fmt::format("{}", at));
-  }
+  if (!access_.good()) refuse(text());
+}
+
+Field find_field(std::vector<Field> fields, std::string_view name) {
+  const auto found = std::ranges::find(fields, name, &Field::name);
+  if (found != fields.end()) return std::move(*found);
+  std::vector<std::string> names;
+  for (const auto& f : fields) names.push_back(f.name());
+  throw std::invalid_argument(
+      fmt::format("unknown setting \"{}\"; must be one of {}", name, join(names, ", ")));
 }
 
 void apply(const Settings& settings, std::vector<Field> fields) {
-  for (const auto& [name, text] : settings) {
-    const auto field = std::ranges::find(fields, name, &Field::name);
-    if (field == fields.end()) {
-      std::vector<std::string> names;
-      for (const auto& f : fields) names.push_back(f.name());
-      throw std::invalid_argument(
-          fmt::format("unknown setting \"{}\"; must be one of {}", name, join(names, ", ")));
-    }
-    field->set(text);
-  }
+  for (const auto& [name, text] : settings) find_field(fields, name).set(text);
 }
 
 void check(const std::vector<Field>& fields) {

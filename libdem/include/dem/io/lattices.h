@@ -1,5 +1,5 @@
 #pragma once
-// Lattices for points: over given bounds, or from how dense the points are.
+// Lattices for points: over given bounds, or from the density of the points.
 
 #include <string>
 
@@ -26,15 +26,17 @@ struct Bounds {
 /// "W,S,E,N". Throws std::invalid_argument.
 Bounds parse_bounds(const std::string& text);
 
-/// The lattice of square cells over `bounds`, which are the outer edges of its cells (`nodes`: the
-/// centres of the outer ones). Where they are no whole number of cells apart, east and south give
-/// way. On degrees, a cell given in metres is square in metres at the middle latitude; on metres, a
-/// cell in degrees is an error.
+/// The lattice of square cells over `bounds`, which are the outer edges of its cells (with `nodes`:
+/// the centres of the outer cells).
+/// If their distance is not a whole number of cells, east and south change. In degrees, a cell that
+/// is given in metres is square in metres at the middle latitude. In metres, a cell in degrees is
+/// an error.
 /// Throws std::invalid_argument: no area, cells that do not suit the system, more than 2^31 cells.
 Lattice lattice_over(const Bounds& bounds, CellSize cell, const std::string& crs_wkt, bool nodes);
 
-/// The lattice that suits points as dense as these: cells of half their mean distance, 1, 2 or 5
-/// times a power of ten of the system's unit, on multiples of that.
+/// The lattice that suits points of this density. Its cells have half the mean distance of the
+/// points, rounded to 1, 2 or 5 times a power of ten of the unit of the system. Its edges are
+/// multiples of the cell size.
 /// Throws std::invalid_argument when the points cover no area.
 Lattice lattice_for(const Extent& extent, const std::string& crs_wkt);
 

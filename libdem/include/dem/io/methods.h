@@ -1,5 +1,5 @@
 #pragma once
-// Fillers of other libraries, in the same table form, to be compared with.
+// Fill methods of other libraries, in the same table form, for comparison.
 
 #include <vector>
 
@@ -7,8 +7,9 @@
 
 namespace dem {
 
-/// `idw`: GDALFillNodata, inverse distance along eight (GDAL: four conic) directions, no distance
-/// limit, `smoothing_passes` 0 by default. `pushpull`: OpenImageIO's fillholes_pushpull.
+/// `idw` is GDALFillNodata: inverse distance in eight directions (four conic ones in GDAL), without
+/// a distance limit, with `smoothing_passes` 0 by default. `pushpull` is OpenImageIO's
+/// fillholes_pushpull.
 const std::vector<FillMethod>& baseline_methods();
 
 /// fill_methods() and baseline_methods().

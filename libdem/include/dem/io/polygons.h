@@ -1,5 +1,5 @@
 #pragma once
-// Polygons of vector files, in and out, and breaklines.
+// Polygons of vector files, read and written, and breaklines.
 
 #include <memory>
 #include <string>
@@ -14,9 +14,9 @@ namespace dem {
 /// The polygons of a vector file, in cells of a raster.
 class Polygons {
  public:
-  /// All polygons of all layers, brought into the raster's coordinates.
-  /// Throws IoError when the file cannot be read, holds no polygon, or says no coordinate system
-  /// where the raster has one.
+  /// All polygons of all layers, transformed into the coordinates of the raster.
+  /// Throws IoError when the file cannot be read, has no polygon, or has no coordinate system while
+  /// the raster has one.
   Polygons(const std::string& path, const GeoRef& ref);
   ~Polygons();
   Polygons(Polygons&&) noexcept;
@@ -30,13 +30,15 @@ class Polygons {
   std::unique_ptr<Shapes> shapes_;
 };
 
-/// The lines and the outlines of polygons of all layers of a vector file, on a raster's lattice.
-/// Throws IoError as Polygons, and when there is neither.
+/// The lines and the outlines of polygons of all layers of a vector file, on the lattice of a
+/// raster.
+/// Throws IoError as Polygons does, and when the file has neither lines nor polygons.
 Breaklines read_breaklines(const std::string& path, const GeoRef& ref, Size size);
 
-/// Writes holes as polygons with their facts (hole_facts()) as attributes; the format follows the
-/// extension (.gpkg, .geojson, .shp ...). The path holds what it held before or the whole new file.
-/// `known`: the mask that the holes were found in. Throws IoError.
+/// Writes holes as polygons with their facts (hole_facts()) as attributes. The extension decides
+/// the format (.gpkg, .geojson, .shp and others). The path holds what it held before or the whole
+/// new file.
+/// `known` is the mask in which the holes were found. Throws IoError.
 void write_holes(const std::string& path, const std::vector<Hole>& holes, const Mask& known,
                  const GeoRef& ref, bool overwrite);
 

@@ -1,5 +1,6 @@
 #pragma once
-// Rasters that need not fit in memory: read by boxes, written row by row, through GDAL.
+// Rasters that may be larger than memory. They are read by boxes and written row by row, through
+// GDAL.
 
 #include <cstdint>
 #include <functional>
@@ -15,14 +16,14 @@
 
 namespace dem {
 
-/// The memory in bytes that GDAL may keep for blocks of all files (it is one cache).
+/// The memory in bytes that GDAL may use for blocks of all files together.
 void set_block_cache(std::size_t bytes);
 
 /// One band of elevations, read part by part.
 class RasterReader {
  public:
-  /// Reads what the file says beside its heights. Accepts what read_dem does; an .hgt or an image
-  /// is held in memory. Throws IoError.
+  /// Reads what the file says in addition to its heights. It accepts what read_dem accepts. An .hgt
+  /// file or an image is kept in memory. Throws IoError.
   RasterReader(const std::string& path, const ReadOptions& options);
   ~RasterReader();
   RasterReader(const RasterReader&) = delete;
@@ -33,15 +34,16 @@ class RasterReader {
   const Source& source() const;  ///< until scan(), its nodata is the declared one, without evidence
   std::size_t held_bytes() const;  ///< memory of a file that is not read part by part
 
-  /// Rows in order, each once: `begin` is called first, and again when the rows showed undeclared
-  /// no-data and pass once more with it taken as unknown.
+  /// Delivers the rows in order, each once. `begin` is called first. It is called again when the
+  /// rows contain undeclared nodata; the rows then pass once more, with that value treated as
+  /// unknown.
   void scan(const std::function<void()>& begin,
             const std::function<void(int row, std::span<const std::uint8_t> known,
                                      std::span<const float> z)>& each,
             const Run& run);
 
-  /// A box, as read_dem gives it; its spacing is left at 1 m. `exact`: the values as doubles, where
-  /// float32 cannot hold each of them (else left empty).
+  /// A box, as read_dem gives it. Its spacing is 1 m. `exact` receives the values as doubles where
+  /// float32 cannot hold each of them, and is empty otherwise.
   Dem read(const Box& box, Raster<double>* exact = nullptr);
 
  private:
@@ -50,18 +52,18 @@ class RasterReader {
   std::unique_ptr<DemFile> whole_;  ///< instead of file_
 };
 
-/// Another DEM, brought onto the cells of a raster.
+/// Another DEM, resampled to the cells of a raster.
 class AlignedReader {
  public:
-  /// `target`: the raster's georeference. Throws IoError when the file cannot be read, or only one
-  /// of the two says a coordinate system.
+  /// `target` is the georeference of the raster. Throws IoError when the file cannot be read, or
+  /// when only one of the two has a coordinate system.
   AlignedReader(const std::string& path, const GeoRef& target);
   ~AlignedReader();
   AlignedReader(AlignedReader&&) noexcept;
   AlignedReader& operator=(AlignedReader&&) noexcept;
 
-  /// Its heights at the cells of a box: cubic, reprojected when its coordinates are others. Cells
-  /// that it does not cover, or where it is void, are unknown.
+  /// Its heights at the cells of a box, by cubic resampling, reprojected if its coordinate system
+  /// is a different one. Cells that it does not cover, or where it is void, are unknown.
   Dem read(const Box& box);
 
  private:
@@ -69,23 +71,24 @@ class AlignedReader {
   std::unique_ptr<File> file_;
 };
 
-/// A raster written row by row; it appears under its name, whole, with commit().
+/// A raster that is written row by row. The complete file appears under its name with commit().
 class RasterWriter {
  public:
-  /// Formats: GTiff (tiled, compressed), COG, HGT; NAME.vrt: a VRT of GeoTIFFs of 4096 x 4096 cells
-  /// in NAME_tiles/; a path that ends in "/": a folder of one-degree .hgt tiles, whose shared
-  /// edges are equal, and none for a tile without a known cell.
-  /// The no-data value is that of the options, of the source, or a usual one. Throws IoError.
+  /// Formats: GTiff (tiled, compressed), COG, HGT. NAME.vrt: a VRT of GeoTIFFs of 4096 x 4096 cells
+  /// in NAME_tiles/. A path that ends in "/": a folder of one-degree .hgt tiles with equal shared
+  /// edges; a tile without a known cell is not written.
+  /// The nodata value is that of the options, that of the source, or a common one. Throws IoError.
   RasterWriter(const std::string& path, Size size, const GeoRef& ref, const Source& source,
                const WriteOptions& options, const Run& run);
   ~RasterWriter();
   RasterWriter(const RasterWriter&) = delete;
   RasterWriter& operator=(const RasterWriter&) = delete;
 
-  /// The next rows. `exact` (may be empty): used where it rounds to the height, as in write_dem.
+  /// Writes the next rows. `exact` (may be empty) is used where it rounds to the height, as in
+  /// write_dem.
   void write(const Dem& rows, const Raster<double>& exact = {});
 
-  /// After the last row. Throws IoError.
+  /// Call it after the last row. Throws IoError.
   void commit();
 
   struct File;

@@ -16,7 +16,7 @@
 
 static_assert(std::endian::native == std::endian::little, "LAS is little-endian, read as it is");
 
-namespace dem {
+namespace dem::io {
 namespace {
 
 struct CloseFile {
@@ -178,4 +178,4 @@ void read_las_points(const std::string& path, const PointReadOptions& options, P
   }
 }
 
-}  // namespace dem
+}  // namespace dem::io

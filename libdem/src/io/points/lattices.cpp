@@ -11,6 +11,7 @@
 #include "io/crs.h"
 
 namespace dem {
+using namespace io;
 namespace {
 
 constexpr double most_cells = 2147483647;
@@ -131,8 +132,8 @@ Lattice lattice_for(const Extent& e, const std::string& crs_wkt) {
   const double cell = cell_for_density((e.east - e.west) * shorter, e.north - e.south, e.points);
   if (!(cell > 0))
     throw std::invalid_argument(
-        fmt::format("the {} point{} cover{} no area; give --bounds and --cell, or --like", e.points,
-                    e.points == 1 ? "" : "s", e.points == 1 ? "s" : ""));
+        fmt::format("the {} point{} cover{} no area; bounds and cell, or like, must be given",
+                    e.points, e.points == 1 ? "" : "s", e.points == 1 ? "s" : ""));
   const double west = std::round(e.west / cell) * cell, north = std::round(e.north / cell) * cell;
   const int cols = steps_over("columns", e.east - west, cell) + 1;
   const int rows = steps_over("rows", north - e.south, cell) + 1;

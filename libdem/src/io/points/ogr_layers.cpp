@@ -10,7 +10,7 @@
 
 #include "dem/io/rasters.h"
 
-namespace dem {
+namespace dem::io {
 namespace {
 
 std::vector<std::string> layer_names(GDALDatasetH dataset) {
@@ -49,7 +49,9 @@ VectorLayer::VectorLayer(const std::string& path, const std::string& name) : pat
   if (names.empty()) throw IoError(path, "has no layer");
   if (name.empty() && names.size() > 1)
     throw IoError(
-        path, fmt::format("has {} layers; give --layer: {}", names.size(), fmt::join(names, ", ")));
+        path,
+        fmt::format("has {} layers; one must be chosen: {}", names.size(), fmt::join(names, ", ")),
+        "layer");
   layer_ = name.empty() ? GDALDatasetGetLayer(dataset_.get(), 0)
                         : GDALDatasetGetLayerByName(dataset_.get(), name.c_str());
   if (layer_ == nullptr)
@@ -101,10 +103,11 @@ int VectorLayer::elevation_field(const std::string& name) const {
   throw IoError(
       path_,
       fmt::format("layer {} has no elevations: its geometry has no z, and no field "
-                  "is called so; give --z-field ({})",
+                  "is called so ({})",
                   OGR_L_GetName(layer_),
                   numbers.empty() ? "it has no number field"
-                                  : fmt::format("number fields: {}", fmt::join(numbers, ", "))));
+                                  : fmt::format("number fields: {}", fmt::join(numbers, ", "))),
+      "z_field");
 }
 
 std::string VectorLayer::field_name(int field) const {
@@ -121,4 +124,4 @@ void VectorLayer::for_each(const std::function<bool(OGRFeatureH)>& each) const {
   if (errors.any()) errors.fail(path_, "cannot be read");
 }
 
-}  // namespace dem
+}  // namespace dem::io

@@ -8,7 +8,7 @@
 
 #include "io/gdal_support.h"
 
-namespace dem {
+namespace dem::io {
 
 class VectorLayer {
  public:
@@ -40,4 +40,4 @@ class VectorLayer {
 /// Whether a column of this name usually holds elevations.
 bool is_elevation_name(const std::string& name);
 
-}  // namespace dem
+}  // namespace dem::io

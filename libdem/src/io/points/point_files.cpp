@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <stdexcept>
 
@@ -16,6 +17,7 @@
 #include "io/staged_file.h"
 
 namespace dem {
+using namespace io;
 namespace {
 
 struct DestroyCrs {
@@ -52,10 +54,9 @@ void check_degrees(const std::string& path, const Points& points) {
     if (std::abs(x) <= 90 && std::abs(y) <= 360)
       throw IoError(path,
                     fmt::format("x = {}, y = {}: y is no latitude; longitude and latitude are "
-                                "the wrong way round (name the columns: --x-field, --y-field)",
+                                "the wrong way round; x_field and y_field name the columns",
                                 x, y));
-    throw IoError(path,
-                  fmt::format("x = {}, y = {} are no longitude and latitude; give --crs", x, y));
+    throw IoError(path, fmt::format("x = {}, y = {} are no longitude and latitude", x, y), "crs");
   }
 }
 
@@ -120,7 +121,7 @@ bool is_text_name(const std::string& path) {
 
 }  // namespace
 
-std::string wgs84() { return crs_from_text("EPSG:4326"); }
+std::string io::wgs84() { return crs_from_text("EPSG:4326"); }
 
 std::string crs_from_text(const std::string& text) {
   const CrsPtr crs = parse_crs(text);
@@ -136,8 +137,29 @@ std::string crs_name(const std::string& crs_wkt) {
   return name == nullptr ? "unnamed" : name;
 }
 
+std::vector<Field> fields(PointReadOptions& o) {
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  return {
+      {"x_field", o.x_field, "column or attribute of x, by name or by number from 1; \"\": found"},
+      {"y_field", o.y_field, "column or attribute of y; \"\": found"},
+      {"z_field", o.z_field, "column or attribute of the elevation in metres; \"\": found"},
+      {"sigma_field", o.sigma_field, "column of the elevation's standard error in metres"},
+      {"weight_field", o.weight_field, "column of the elevation's weight in a mean"},
+      {"position_field", o.position_field, "column of whole positions in MGRS, UTM or DMS"},
+      {"along_lines",
+       o.along_lines,
+       {0, infinite},
+       "units of the file",
+       "distance of the points that lines of a vector layer are read as; 0: their vertices"},
+      {"layer", o.layer, "layer of a vector file; \"\": the only one"},
+      {"nodata", o.nodata, {.or_nan = true}, "m", "an elevation that means none"},
+      {"crs", o.crs, "coordinate system of x and y; \"\": as the file says"},
+      {"to_crs", o.to_crs, "coordinate system that x and y are brought to; \"\": as they are"}};
+}
+
 PointSource read_points(const std::string& path, const PointReadOptions& options,
                         const PointSink& sink, const Run& run) {
+  check_options(options);
   register_gdal();
   PointReadOptions o = options;
   if (!o.crs.empty()) o.crs = crs_from_text(o.crs);

@@ -3,7 +3,7 @@
 
 #include "dem/io/point_files.h"
 
-namespace dem {
+namespace dem::io {
 
 /// Takes a part of the points, and may change it. `source.crs_wkt` is known before the first part.
 using PointParts = std::function<void(Points&)>;
@@ -18,4 +18,4 @@ void read_vector_points(const std::string& path, const PointReadOptions& options
 /// WGS 84, longitude and latitude.
 std::string wgs84();
 
-}  // namespace dem
+}  // namespace dem::io

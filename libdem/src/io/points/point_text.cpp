@@ -22,7 +22,8 @@
 #include "io/staged_file.h"
 #include "numeric/parallel.h"
 
-namespace dem {
+namespace dem::io {
+using namespace numeric;
 namespace {
 
 constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
@@ -311,13 +312,12 @@ class Columns {
       if (table_.position < 0 && table_.y < 0) table_.y = 1;
       if (table_.z < 0) table_.z = first;
     }
-    const auto missing = [&](const char* what, const char* option) {
-      throw IoError(
-          path_, fmt::format("no column is called {}; give {} ({})", what, option, columns_text()));
+    const auto missing = [&](const char* what, const char* field) {
+      throw IoError(path_, fmt::format("no column is called {} ({})", what, columns_text()), field);
     };
-    if (table_.position < 0 && table_.x < 0) missing("x, lon or the like", "--x-field");
-    if (table_.position < 0 && table_.y < 0) missing("y, lat or the like", "--y-field");
-    if (table_.z < 0) missing("z, elevation or the like", "--z-field");
+    if (table_.position < 0 && table_.x < 0) missing("x, lon or the like", "x_field");
+    if (table_.position < 0 && table_.y < 0) missing("y, lat or the like", "y_field");
+    if (table_.z < 0) missing("z, elevation or the like", "z_field");
     if (table_.needed() > columns_)
       throw IoError(path_,
                     fmt::format("line {}: {} column{}; must have at least {}", header_lines_ + 1,
@@ -508,9 +508,9 @@ class Blocks {
 void read_text_points(const std::string& path, const PointReadOptions& options, PointSource& source,
                       const PointParts& parts, const Run& run) {
   if (!options.layer.empty())
-    throw IoError(path, "is text, which has no layers; --layer is for vector files");
+    throw IoError(path, "is text, which has no layers; layer is for vector files");
   if (!options.classes.empty())
-    throw IoError(path, "is text, which has no classes; --class is for LAS files");
+    throw IoError(path, "is text, which has no classes; class is for LAS files");
   Blocks blocks(path);
   std::string_view block = blocks.next();
   if (block.empty()) throw IoError(path, "is empty");
@@ -546,4 +546,4 @@ void read_text_points(const std::string& path, const PointReadOptions& options, 
   }
 }
 
-}  // namespace dem
+}  // namespace dem::io

@@ -13,7 +13,7 @@
 #include "io/points/ogr_layers.h"
 #include "io/points/point_reading.h"
 
-namespace dem {
+namespace dem::io {
 namespace {
 
 struct Vertex {
@@ -81,8 +81,8 @@ void read_vector_points(const std::string& path, const PointReadOptions& options
                         PointSource& source, const PointParts& parts, const Run& run) {
   if (!options.x_field.empty() || !options.y_field.empty() || !options.position_field.empty())
     throw IoError(path,
-                  "is a vector file, whose geometry has the positions; --x-field, --y-field "
-                  "and --position-field are for text");
+                  "is a vector file, whose geometry has the positions; x_field, y_field "
+                  "and position_field are for text");
   const VectorLayer layer(path, options.layer);
   source.format = layer.driver();
   source.crs_wkt = options.crs.empty() ? layer.crs_wkt() : options.crs;
@@ -121,4 +121,4 @@ void read_vector_points(const std::string& path, const PointReadOptions& options
   parts(points);
 }
 
-}  // namespace dem
+}  // namespace dem::io

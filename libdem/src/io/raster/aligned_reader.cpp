@@ -13,6 +13,7 @@
 #include "io/raster/gdal_raster.h"
 
 namespace dem {
+using namespace io;
 namespace {
 
 constexpr float nothing = -3e38f;  // "no height" for the warper

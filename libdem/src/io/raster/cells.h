@@ -12,7 +12,7 @@
 
 #include "dem/io/rasters.h"
 
-namespace dem {
+namespace dem::io {
 
 /// Rounded half away from zero for integers, else as it is; `ok` turns false outside the type.
 template <class T>
@@ -75,4 +75,4 @@ auto with_type(CellType type, const Call& call) {
   return call(double{});
 }
 
-}  // namespace dem
+}  // namespace dem::io

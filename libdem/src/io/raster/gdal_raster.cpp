@@ -17,7 +17,7 @@
 #include "io/raster/tile_folder.h"
 #include "io/staged_file.h"
 
-namespace dem {
+namespace dem::io {
 namespace {
 
 constexpr int kRowsAtOnce = 256;
@@ -44,7 +44,7 @@ GDALRasterBandH choose_band(const std::string& path, GDALDatasetH dataset, int a
     found = band;
   }
   if (candidates == 1) return found;
-  throw IoError(path, fmt::format("has {} bands; choose one with --band N", bands));
+  throw IoError(path, fmt::format("has {} bands; one must be chosen", bands), "band");
 }
 
 bool is_signed_byte(GDALRasterBandH band) {
@@ -446,19 +446,20 @@ Cells<T> convert(const std::string& path, const Dem& dem, const Source& source,
   if (options.nodata) {
     if (!fits<T>(*options.nodata))
       throw IoError(path,
-                    fmt::format("no-data {} does not fit the type, {} to {}", *options.nodata,
+                    fmt::format("nodata {} does not fit the type, {} to {}", *options.nodata,
                                 std::numeric_limits<T>::lowest(), std::numeric_limits<T>::max()));
     if (!fill(T(*options.nodata)))
-      throw IoError(path,
-                    fmt::format("no-data {} is also an elevation; choose another with --nodata",
-                                *options.nodata));
+      throw IoError(
+          path,
+          fmt::format("nodata {} is also an elevation; another must be chosen", *options.nodata),
+          "out_nodata");
     return cells;
   }
   for (T nodata : nodata_candidates<T>(source.nodata))
     if (fill(nodata)) return cells;
   if (std::ranges::count(known, 0) > 0)
-    throw IoError(path,
-                  "every likely no-data value is also an elevation; choose one with --nodata");
+    throw IoError(path, "every likely nodata value is also an elevation; one must be chosen",
+                  "out_nodata");
   cells.nodata.reset();
   return cells;
 }
@@ -625,4 +626,4 @@ std::string gdal_format_of(const std::string& path) {
   return "";
 }
 
-}  // namespace dem
+}  // namespace dem::io

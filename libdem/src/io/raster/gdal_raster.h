@@ -10,7 +10,7 @@
 #include "dem/io/rasters.h"
 #include "io/gdal_support.h"
 
-namespace dem {
+namespace dem::io {
 
 DemFile read_gdal(const std::string& path, const ReadOptions& options, const Run& run);
 
@@ -59,4 +59,4 @@ GDALDriverH checked_driver(const std::string& path, const std::string& format);
 /// The GDAL driver that writes files with this extension, or "".
 std::string gdal_format_of(const std::string& path);
 
-}  // namespace dem
+}  // namespace dem::io

@@ -7,31 +7,29 @@
 #include <cmath>
 #include <limits>
 
-#include "io/oiio_support.h"
+#include "io/images/image_files.h"
 #include "io/raster/nodata.h"
 #include "io/staged_file.h"
 
-namespace dem {
+namespace dem::io {
 namespace {
 
 // The key under which the range of heights goes along, in Source and in the image's description.
 constexpr const char* kRangeKey = "HEIGHT_RANGE";
 
-using OIIO::TypeDesc;
-
 /// Grey levels are integers 0 ... levels, or floats (levels = 0).
 struct Levels {
   CellType type = CellType::uint16;
   double top = 65535;
-  TypeDesc oiio = TypeDesc::UINT16;
+  SampleType sample = SampleType::uint16;
 
   bool integer() const { return top > 0; }
 };
 
 Levels levels_of(CellType type) {
-  if (type == CellType::uint8) return {type, 255, TypeDesc::UINT8};
-  if (type == CellType::uint16) return {type, 65535, TypeDesc::UINT16};
-  return {CellType::float32, 0, TypeDesc::FLOAT};
+  if (type == CellType::uint8) return {type, 255, SampleType::uint8};
+  if (type == CellType::uint16) return {type, 65535, SampleType::uint16};
+  return {CellType::float32, 0, SampleType::float32};
 }
 
 std::optional<HeightRange> parse_range(std::string_view text) {
@@ -56,17 +54,17 @@ std::optional<HeightRange> described_range(const std::string& description) {
 }
 
 /// Which channel holds the heights.
-int choose_channel(const std::string& path, const OIIO::ImageSpec& spec, int asked) {
+int choose_channel(const std::string& path, const ImageShape& shape, int asked) {
   if (asked != 0) {
-    if (asked < 0 || asked > spec.nchannels)
+    if (asked < 0 || asked > shape.channels)
       throw IoError(path,
-                    fmt::format("has {} channels; band {} was asked for", spec.nchannels, asked));
+                    fmt::format("has {} channels; band {} was asked for", shape.channels, asked));
     return asked - 1;
   }
-  const int colours = spec.nchannels - (spec.alpha_channel >= 0);
+  const int colours = shape.channels - (shape.alpha_channel >= 0);
   if (colours != 1)
-    throw IoError(path, fmt::format("has {} bands; choose one with --band N", colours));
-  return spec.alpha_channel == 0 ? 1 : 0;
+    throw IoError(path, fmt::format("has {} bands; one must be chosen", colours), "band");
+  return shape.alpha_channel == 0 ? 1 : 0;
 }
 
 }  // namespace
@@ -78,30 +76,19 @@ bool is_image_name(const std::string& path) {
 
 DemFile read_heightmap(const std::string& path, const ReadOptions& options, const Run& run) {
   if (options.heights) check_range(*options.heights);
-  OIIO::ImageSpec config;
-  config["oiio:UnassociatedAlpha"] = 1;  // grey levels as stored, not multiplied by alpha
-  const auto input = OIIO::ImageInput::open(path, &config);
-  if (!input) throw IoError(path, one_line(OIIO::geterror()));
-  const OIIO::ImageSpec& spec = input->spec();
-  const int channel = choose_channel(path, spec, options.band);
-  const Levels levels = levels_of(spec.format == TypeDesc::UINT8    ? CellType::uint8
-                                  : spec.format == TypeDesc::UINT16 ? CellType::uint16
-                                                                    : CellType::float32);
-  const Size size{spec.width, spec.height};
-  const int channels = spec.nchannels, alpha = spec.alpha_channel;
-
-  // Integers come scaled to 0 ... 1 and exactly back; floats as they are.
-  std::vector<float> pixels(size.cells() * std::size_t(channels));
-  OiioProgress progress(run, "reading");
-  const bool whole =
-      input->read_image(0, 0, 0, channels, TypeDesc::FLOAT, pixels.data(), OIIO::AutoStride,
-                        OIIO::AutoStride, OIIO::AutoStride, OiioProgress::call, &progress);
-  progress.rethrow();
-  if (!whole) throw IoError(path, one_line(input->geterror()));
+  ImageReader image(path);
+  const ImageShape& shape = image.shape();
+  const int channel = choose_channel(path, shape, options.band);
+  const Levels levels = levels_of(shape.type == SampleType::uint8    ? CellType::uint8
+                                  : shape.type == SampleType::uint16 ? CellType::uint16
+                                                                     : CellType::float32);
+  const Size size{shape.cols, shape.rows};
+  const int channels = shape.channels, alpha = shape.alpha_channel;
+  const std::vector<float> pixels = image.read(run);
 
   // Black = low, white = high; without a range the levels themselves are metres.
   std::optional<HeightRange> range = options.heights;
-  if (!range) range = described_range(spec.get_string_attribute("ImageDescription"));
+  if (!range) range = described_range(shape.description);
   if (!range && levels.integer()) range = HeightRange{0, levels.top};
 
   DemFile file;
@@ -235,14 +222,13 @@ void write_greys(const std::string& path, const Dem& dem, const Levels& levels,
     if (with_alpha) pixel[1] = T(known[i] ? (levels.integer() ? levels.top : 1) : 0);
   }
 
-  OIIO::ImageSpec spec(dem.size().cols, dem.size().rows, channels, levels.oiio);
-  spec.channelnames =
-      with_alpha ? std::vector<std::string>{"Y", "A"} : std::vector<std::string>{"Y"};
-  spec.alpha_channel = with_alpha ? 1 : -1;
-  spec["oiio:UnassociatedAlpha"] = 1;
-  if (range)
-    spec["ImageDescription"] = fmt::format("{}={} {}", kRangeKey, range->low_m, range->high_m);
-  write_pixels(path, spec, pixels.data(), options.overwrite, run);
+  ImageShape shape{.cols = dem.size().cols,
+                   .rows = dem.size().rows,
+                   .channels = channels,
+                   .alpha_channel = with_alpha ? 1 : -1,
+                   .type = levels.sample};
+  if (range) shape.description = fmt::format("{}={} {}", kRangeKey, range->low_m, range->high_m);
+  write_pixels(path, shape, pixels.data(), options.overwrite, run);
 }
 
 }  // namespace
@@ -250,7 +236,7 @@ void write_greys(const std::string& path, const Dem& dem, const Levels& levels,
 void write_heightmap(const std::string& path, const Dem& dem, const Source& source,
                      const WriteOptions& options, const Run& run) {
   if (options.nodata)
-    throw IoError(path, "an image has no no-data value; give --unknown-grey or leave it to alpha");
+    throw IoError(path, "an image has no nodata value; unknown_grey or alpha marks unknown cells");
   if (options.unknown_grey && !(*options.unknown_grey >= 0 && *options.unknown_grey <= 1))
     throw std::invalid_argument(
         fmt::format("unknown_grey = {}; must be in [0, 1]", *options.unknown_grey));
@@ -264,4 +250,4 @@ void write_heightmap(const std::string& path, const Dem& dem, const Source& sour
     write_greys<float>(path, dem, levels, range, options, run);
 }
 
-}  // namespace dem
+}  // namespace dem::io

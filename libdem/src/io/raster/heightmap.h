@@ -5,7 +5,7 @@
 
 #include "dem/io/rasters.h"
 
-namespace dem {
+namespace dem::io {
 
 /// Whether the name ends in .png, .exr, .jpg or .jpeg (in any case).
 bool is_image_name(const std::string& path);
@@ -14,4 +14,4 @@ DemFile read_heightmap(const std::string& path, const ReadOptions& options, cons
 void write_heightmap(const std::string& path, const Dem& dem, const Source& source,
                      const WriteOptions& options, const Run& run);
 
-}  // namespace dem
+}  // namespace dem::io

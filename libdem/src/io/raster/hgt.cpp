@@ -18,7 +18,7 @@
 #include "io/raster/cells.h"
 #include "io/raster/nodata.h"
 
-namespace dem {
+namespace dem::io {
 namespace {
 
 constexpr int kVoid = -32768;
@@ -192,7 +192,7 @@ Corner corner_of(const std::string& path, const std::string& vsi, const ReadOpti
   }
   for (const std::string& name : {base_name(path), base_name(vsi)})
     if (const auto corner = find_corner(name)) return *corner;
-  throw IoError(path, "its name does not say which tile it is; give --tile, like --tile N36E008");
+  throw IoError(path, "its name does not say which tile it is, such as N36E008", "tile");
 }
 
 }  // namespace
@@ -247,7 +247,7 @@ void check_hgt(const std::string& path, Size size, const GeoRef& ref, const Writ
   if (options.type.value_or(CellType::int16) != CellType::int16)
     throw IoError(path, "an .hgt holds int16 only");
   if (options.nodata.value_or(kVoid) != kVoid)
-    throw IoError(path, fmt::format("no-data {}; an .hgt has {} only", *options.nodata, kVoid));
+    throw IoError(path, fmt::format("nodata {}; an .hgt has {} only", *options.nodata, kVoid));
   if (!options.metadata.empty()) throw IoError(path, "an .hgt holds no metadata");
 
   // Its place is in its name alone, so the two must not contradict each other.
@@ -318,4 +318,4 @@ std::vector<HgtTile> hgt_tiles(const std::string& path, Size size, const GeoRef&
   return tiles;
 }
 
-}  // namespace dem
+}  // namespace dem::io

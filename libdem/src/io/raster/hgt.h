@@ -13,7 +13,7 @@
 #include "dem/io/rasters.h"
 #include "io/staged_file.h"
 
-namespace dem {
+namespace dem::io {
 
 /// Whether the name ends in .hgt, .hgt.gz or .hgt.zip (in any case).
 bool is_hgt_name(const std::string& path);
@@ -52,4 +52,4 @@ struct HgtTile {
 /// Throws IoError when the raster's cells are not the nodes of whole tiles.
 std::vector<HgtTile> hgt_tiles(const std::string& path, Size size, const GeoRef& ref);
 
-}  // namespace dem
+}  // namespace dem::io

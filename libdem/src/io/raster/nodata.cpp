@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace dem {
+namespace dem::io {
 namespace {
 
 // Beyond this no number is an elevation, in whatever unit: rasters use the lowest float as "none".
@@ -129,4 +129,4 @@ template void NodataSearch::scan_row(std::span<double>, std::span<std::uint8_t>)
 template void NodataSearch::clear_sentinels(std::span<float>, std::span<std::uint8_t>);
 template void NodataSearch::clear_sentinels(std::span<double>, std::span<std::uint8_t>);
 
-}  // namespace dem
+}  // namespace dem::io

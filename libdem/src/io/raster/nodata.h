@@ -9,7 +9,7 @@
 
 #include "dem/io/rasters.h"
 
-namespace dem {
+namespace dem::io {
 
 /// Looks through the raw values of a file, row by row.
 class NodataSearch {
@@ -54,4 +54,4 @@ class NodataSearch {
   std::uint64_t valued_ = 0, nan_ = 0, infinite_ = 0, huge_ = 0, masked_ = 0;
 };
 
-}  // namespace dem
+}  // namespace dem::io

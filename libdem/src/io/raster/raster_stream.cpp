@@ -15,6 +15,7 @@
 #include "io/raster/tile_folder.h"
 
 namespace dem {
+using namespace io;
 namespace {
 
 constexpr std::size_t cells_at_once = 1 << 22;
@@ -109,6 +110,7 @@ struct RasterReader::File {
 };
 
 RasterReader::RasterReader(const std::string& path, const ReadOptions& options) {
+  check_options(options);
   const bool whole =
       is_hgt_name(path) || is_image_name(path) || options.heights || options.unknown_grey;
   if (whole && !is_list_of_files(path)) {

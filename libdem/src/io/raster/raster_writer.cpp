@@ -20,6 +20,7 @@
 #include "io/staged_file.h"
 
 namespace dem {
+using namespace io;
 namespace fs = std::filesystem;
 
 /// What a format does with rows that come from the north to the south.
@@ -48,7 +49,7 @@ std::optional<T> choose_nodata(const std::string& path, const Source& source,
   if (options.nodata) {
     if (!fits(*options.nodata))
       throw IoError(path,
-                    fmt::format("no-data {} does not fit the type, {} to {}", *options.nodata,
+                    fmt::format("nodata {} does not fit the type, {} to {}", *options.nodata,
                                 std::numeric_limits<T>::lowest(), std::numeric_limits<T>::max()));
     return T(*options.nodata);
   }
@@ -112,12 +113,12 @@ class TiffFile : public RasterWriter::File {
     const bool apart = to_cells<T>(path_, rows.z.cells(), exact.cells(), rows.known.cells(),
                                    unknown, std::span<T>(cells));
     if (nodata_ && !apart)
-      throw IoError(path_, fmt::format("no-data {} is also an elevation; choose another with "
-                                       "--out-nodata",
-                                       *nodata_));
-    if (!nodata_ && count(rows.known) < rows.size().cells())
       throw IoError(path_,
-                    "unknown cells remain and no value says so; choose one with --out-nodata");
+                    fmt::format("nodata {} is also an elevation; another must be chosen", *nodata_),
+                    "out_nodata");
+    if (!nodata_ && count(rows.known) < rows.size().cells())
+      throw IoError(path_, "unknown cells remain and no value says so; one must be chosen",
+                    "out_nodata");
     const auto [cols, n] = rows.size();
     const CPLErr error = GDALRasterIO(GDALGetRasterBand(dataset_.get(), 1), GF_Write, 0, row_, cols,
                                       n, cells.data(), cols, n, gdal_type(type_), 0, 0);
@@ -334,7 +335,10 @@ std::unique_ptr<RasterWriter::File> open_file(const std::string& path, Size size
 
 RasterWriter::RasterWriter(const std::string& path, Size size, const GeoRef& ref,
                            const Source& source, const WriteOptions& options, const Run& run)
-    : size_(size), file_(open_file(path, size, ref, source, options, run)) {}
+    : size_(size) {
+  check_options(options);
+  file_ = open_file(path, size, ref, source, options, run);
+}
 RasterWriter::~RasterWriter() = default;
 
 void RasterWriter::write(const Dem& rows, const Raster<double>& exact) {

@@ -14,6 +14,7 @@
 #include "io/staged_file.h"
 
 namespace dem {
+using namespace io;
 namespace {
 
 /// An empty file is told as such before any format guesses at it.
@@ -43,21 +44,58 @@ void write_by_parts(const std::string& path, const Dem& dem, const Source& sourc
 
 }  // namespace
 
+std::vector<Field> fields(ReadOptions& o) {
+  return {{"band", o.band, {0, 65535}, "", "number of the band from 1; 0: the only one"},
+          {"nodata", o.nodata, {.or_nan = true}, "m", "this value is nodata, whatever is declared"},
+          {"detect_nodata", o.detect_nodata, "find undeclared nodata -32768, -32767, -9999, 32767"},
+          {"tile", o.tile, "name of an .hgt tile whose file name does not tell it, as in N36E008"},
+          {"unknown_grey",
+           o.unknown_grey,
+           {0, 1},
+           "",
+           "grey level of an image that is nodata, from 0 (black) to 1 (white)"}};
+}
+
+const std::vector<std::string>& cell_type_names() {
+  static const std::vector<std::string> names{"int8",  "uint8",  "int16",   "uint16",
+                                              "int32", "uint32", "float32", "float64"};
+  return names;
+}
+
+std::vector<Field> fields(WriteOptions& o) {
+  return {
+      {"format", o.format, "GDAL driver name, HGT or image; \"\": by the extension"},
+      {"type", o.type, cell_type_names(), "cell type; unset: that of the source"},
+      {"nodata",
+       o.nodata,
+       {.or_nan = true},
+       "m",
+       "nodata value that the file declares; unset: that of the source, or one that no cell has"},
+      {"compress", o.compress, "compress GeoTIFF and COG losslessly, in tiles"},
+      {"overwrite", o.overwrite, "replace a file that exists"},
+      {"unknown_grey",
+       o.unknown_grey,
+       {0, 1},
+       "",
+       "grey level of nodata in an image, from 0 (black) to 1 (white); unset: transparent"}};
+}
+
 DemFile read_dem(const std::string& path, const ReadOptions& options, const Run& run) {
+  check_options(options);
   const bool grey = options.heights || options.unknown_grey;
   const bool list = is_list_of_files(path);
   const bool hgt = !list && is_hgt_name(path);
   if (hgt && grey)
     throw IoError(path, "is an .hgt, whose heights are metres; it takes no grey levels");
   if (!hgt && !options.tile.empty())
-    throw IoError(path, fmt::format("is no .hgt; --tile {} has no meaning for it", options.tile));
+    throw IoError(path, fmt::format("is no .hgt; tile {} has no meaning for it", options.tile));
   check_not_empty(path);
 
   DemFile file = hgt                                      ? read_hgt(path, options, run)
                  : !list && (grey || is_image_name(path)) ? read_heightmap(path, options, run)
                                                           : read_gdal(path, options, run);
   try {
-    file.dem.spacing = middle_spacing(file.dem.ref, file.dem.size());
+    set_spacing(file.dem);
   } catch (const std::invalid_argument& error) {
     throw IoError(path, error.what());
   }
@@ -67,6 +105,7 @@ DemFile read_dem(const std::string& path, const ReadOptions& options, const Run&
 void write_dem(const std::string& path, const Dem& dem, const Source& source,
                const WriteOptions& options, const Run& run) {
   check_shape(dem);
+  check_options(options);
   const bool image =
       options.format == "image" ||
       (options.format.empty() && (is_image_name(path) || options.heights || options.unknown_grey));
@@ -78,7 +117,7 @@ void write_dem(const std::string& path, const Dem& dem, const Source& source,
   if (hgt || format == "VRT" || is_tile_folder(path))
     return write_by_parts(path, dem, source, options, run);
   if (format.empty())
-    throw IoError(path, "its extension names no format that can be written; give --format");
+    throw IoError(path, "its extension names no format that can be written", "format");
   write_gdal(path, format, dem, source, options, run);
 }
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace dem {
+namespace dem::io {
 
 /// Whether a path is several paths, each on a line of its own.
 bool is_list_of_files(const std::string& path);
@@ -35,4 +35,4 @@ class TileFolder {
   bool made_ = false;
 };
 
-}  // namespace dem
+}  // namespace dem::io

@@ -1,6 +1,6 @@
 #pragma once
-// Filled holes on disk, until the raster is written: cut by strips of rows, so that writing needs one
-// strip at a time, and closed window by window, so that a run can go on after any stop.
+// Filled holes on disk, until the raster is written: cut by strips of rows, so that writing needs
+// one strip at a time, and closed window by window, so that a run can go on after any stop.
 
 #include <cstdint>
 #include <cstdio>
@@ -8,9 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "dem/holes.h"
+#include "dem/fill.h"
+#include "dem/io/fill_job.h"
 
-namespace dem::app {
+namespace dem::io {
 
 /// Cells of some holes in one strip of rows.
 struct StripPiece {
@@ -19,12 +20,10 @@ struct StripPiece {
   std::vector<CellOrigin> origin;
 };
 
-enum class Layer { heights, sigma, origin };
-
 /// Puts the pieces' cells of one layer into `rows`, the cells of `box` of the raster.
-void overlay(const std::vector<StripPiece>& pieces, Layer layer, const Box& box, Dem& rows);
+void overlay(const std::vector<StripPiece>& pieces, FillLayer layer, const Box& box, Dem& rows);
 
-class Journal {
+class Journal : public FillStore {
  public:
   static constexpr int strip_rows = 256;
   enum class Access { write, read };
@@ -35,15 +34,9 @@ class Journal {
   /// Throws IoError.
   Journal(const std::string& path, const std::string& key, Access access = Access::write);
 
-  /// Whether a window is in it.
-  bool has(std::size_t window) const { return window < done_.size() && done_[window]; }
-  std::size_t windows() const { return entries_.size(); }
-
-  /// The outcomes of the windows that were in the file when it was opened, without cells.
-  const std::vector<HolePatch>& entries() const { return entries_; }
-
-  /// Adds a window; it is on the file when the call returns.
-  void add(const HolePatch& patch);
+  bool has(std::size_t window) const override { return window < done_.size() && done_[window]; }
+  const std::vector<HolePatch>& done() const override { return entries_; }
+  void add(const HolePatch& patch) override;
 
   /// All pieces of one strip.
   std::vector<StripPiece> strip(int number);
@@ -70,4 +63,24 @@ class Journal {
   std::vector<HolePatch> entries_;
 };
 
-}  // namespace dem::app
+/// The journal of a run and those that tasks have left: it adds to the first.
+class Journals : public FillStore {
+ public:
+  void open(const std::string& path, const std::string& key, Journal::Access access);
+
+  bool has(std::size_t window) const override;
+  const std::vector<HolePatch>& done() const override { return done_; }
+  void add(const HolePatch& patch) override { journals_.front()->add(patch); }
+
+  /// All pieces of one strip, those of every journal.
+  std::vector<StripPiece> strip(int number);
+
+  /// Closes the files.
+  void close() { journals_.clear(); }
+
+ private:
+  std::vector<std::unique_ptr<Journal>> journals_;
+  std::vector<HolePatch> done_;
+};
+
+}  // namespace dem::io

@@ -1,4 +1,4 @@
-#include "fill/journal.h"
+#include "io/fill/journal.h"
 
 #include <sys/file.h>
 #include <unistd.h>
@@ -6,13 +6,14 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <iterator>
 #include <map>
 #include <span>
 
 #include "dem/io/rasters.h"
-#include "fill/bytes.h"
+#include "io/fill/bytes.h"
 
-namespace dem::app {
+namespace dem::io {
 namespace {
 
 // A record: head, then `bytes` bytes. Kinds: the key of the run, a piece of a strip, a window that
@@ -64,22 +65,23 @@ std::string bytes_of(const HolePatch& patch) {
   put(out, patch.rim_error_m);
   put(out, patch.offset_m);
   put(out, patch.cells_by_origin);
-  put(out, std::vector<double>{patch.seconds});
+  put(out, std::vector<double>{patch.seconds, patch.contour_lines ? 1. : 0.});
   return out;
 }
 
 HolePatch patch_of(std::string_view bytes, std::size_t window) {
   HolePatch patch;
   patch.window = window;
-  std::vector<double> seconds;
+  std::vector<double> more;
   Taker taker(bytes);
   taker.take(patch.holes);
   taker.take(patch.guide);
   taker.take(patch.rim_error_m);
   taker.take(patch.offset_m);
   taker.take(patch.cells_by_origin);
-  taker.take(seconds);
-  patch.seconds = seconds.empty() ? 0 : seconds[0];
+  taker.take(more);
+  patch.seconds = more.at(0);
+  patch.contour_lines = more.at(1) != 0;
   return patch;
 }
 
@@ -198,7 +200,24 @@ std::vector<StripPiece> Journal::strip(int number) {
   return pieces;
 }
 
-void overlay(const std::vector<StripPiece>& pieces, Layer layer, const Box& box, Dem& rows) {
+void Journals::open(const std::string& path, const std::string& key, Journal::Access access) {
+  journals_.push_back(std::make_unique<Journal>(path, key, access));
+  const auto& more = journals_.back()->done();
+  done_.insert(done_.end(), more.begin(), more.end());
+}
+
+bool Journals::has(std::size_t window) const {
+  return std::ranges::any_of(journals_, [&](const auto& journal) { return journal->has(window); });
+}
+
+std::vector<StripPiece> Journals::strip(int number) {
+  std::vector<StripPiece> pieces;
+  for (const auto& journal : journals_)
+    std::ranges::move(journal->strip(number), std::back_inserter(pieces));
+  return pieces;
+}
+
+void overlay(const std::vector<StripPiece>& pieces, FillLayer layer, const Box& box, Dem& rows) {
   for (const StripPiece& piece : pieces) {
     std::size_t cell = 0;
     for (const CellRun& run : piece.runs) {
@@ -209,14 +228,14 @@ void overlay(const std::vector<StripPiece>& pieces, Layer layer, const Box& box,
       for (int col = std::max(run.begin, box.col); col < end; ++col) {
         const std::size_t i = first + std::size_t(col - run.begin);
         float& z = rows.z(col - box.col, run.row - box.row);
-        if (layer == Layer::origin) z = float(piece.origin[i]);
+        if (layer == FillLayer::origin) z = float(piece.origin[i]);
         if (piece.origin[i] == CellOrigin::left) continue;
-        if (layer == Layer::heights) z = piece.z[i];
-        if (layer == Layer::sigma && !piece.sigma.empty()) z = piece.sigma[i];
+        if (layer == FillLayer::heights) z = piece.z[i];
+        if (layer == FillLayer::sigma && !piece.sigma.empty()) z = piece.sigma[i];
         rows.known(col - box.col, run.row - box.row) = 1;
       }
     }
   }
 }
 
-}  // namespace dem::app
+}  // namespace dem::io

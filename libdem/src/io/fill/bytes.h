@@ -1,5 +1,6 @@
 #pragma once
-// Vectors of plain values as bytes, in the order of this machine: they do not travel to other kinds.
+// Vectors of plain values as bytes, in the order of this machine: they do not travel to other
+// kinds.
 
 #include <cstdint>
 #include <cstring>
@@ -9,7 +10,7 @@
 #include <type_traits>
 #include <vector>
 
-namespace dem::app {
+namespace dem::io {
 
 template <class T>
 void put(std::string& out, const std::vector<T>& values) {
@@ -41,4 +42,4 @@ class Taker {
   std::string_view bytes_;
 };
 
-}  // namespace dem::app
+}  // namespace dem::io
