@@ -271,14 +271,16 @@ TEST_F(PointFiles, ReadVectorLayers) {
               ThrowsMessage<IoError>(HasSubstr("is no number field; its number fields: count")));
 }
 
-TEST(CellSizes, NeedTheirUnit) {
+TEST(CellSizes, AreMetresUnlessTheySayTheirUnit) {
+  EXPECT_EQ(parse_cell_size("30").value, 30);
+  EXPECT_EQ(parse_cell_size("30").unit, CellUnit::metres);
   EXPECT_EQ(parse_cell_size("30m").value, 30);
   EXPECT_EQ(parse_cell_size("30m").unit, CellUnit::metres);
   EXPECT_DOUBLE_EQ(parse_cell_size("3s").value, 3 / 3600.);
   EXPECT_EQ(parse_cell_size("0.001deg").unit, CellUnit::degrees);
-  for (const char* text : {"30", "m", "-1m", "0deg", "1furlong", ""})
+  for (const char* text : {"-30", "m", "-1m", "0deg", "1furlong", ""})
     EXPECT_THAT([&] { parse_cell_size(text); },
-                ThrowsMessage<std::invalid_argument>(HasSubstr("with its unit")))
+                ThrowsMessage<std::invalid_argument>(HasSubstr("must be a size above 0")))
         << text;
 }
 

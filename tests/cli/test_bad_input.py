@@ -198,7 +198,7 @@ class BadUsage(CliTest):
 
 
 class OptionsFirst(CliTest):
-    """Every option is checked before a file is opened: IN is missing, and the option is what is named."""
+    """Every option is checked before a file is opened: IN is missing, and the option is named."""
 
     WRITING = [("--type", "int12"), ("--format", "XYZZY"), ("--co", "NO_SUCH=1"), ("--co", "ZLEVEL"),
                ("--compress", "rar"), ("--out-nodata", "none")]
@@ -231,8 +231,8 @@ class OptionsFirst(CliTest):
                                  ("--seed", "x"), ("--report", "a.tif"), *READING],
         ("reproduce", "mount-washington", "out", "--tile", "IN"): [("--repeats", "0")],
         ("generate", "sketch", "IN", "out.tif"): [("--size", "0"), ("--cell", "0"), ("--cell", "1s"), ("--crs", "1"),
-                                                  ("--origin", "5"), ("--seed", "x"), ("--set", "I"), ("--median", "-1"),
-                                                  *WRITING],
+                                                  ("--origin", "5"), ("--seed", "x"), ("--set", "I"),
+                                                  ("--median", "-1"), *WRITING],
         ("erode", "IN", "out.tif"): [("--set", "steps=x"), ("--every", "0"), ("--water", "no/such/a.tif"),
                                      *READING, *WRITING],
     }
@@ -251,7 +251,8 @@ class OptionsFirst(CliTest):
         self.assert_files()
 
     def test_an_option_given_twice_is_refused(self):
-        self.fails(1, "fill", "IN", "out.tif", "--sigma", "a.tif", "--sigma", "b.tif", says=["--sigma", "more than once"])
+        self.fails(1, "fill", "IN", "out.tif", "--sigma", "a.tif", "--sigma", "b.tif",
+                   says=["--sigma", "more than once"])
 
     def test_an_option_is_no_value_of_another(self):
         self.fails(1, "fill", "IN", "out.tif", "--sigma", "--json", says=["--sigma needs a value", "--json"])

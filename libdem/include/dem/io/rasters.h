@@ -105,8 +105,8 @@ struct WriteOptions {
   std::optional<HeightRange> heights{};
   std::optional<double> unknown_grey{};  ///< for images; default: alpha 0 marks unknown cells
   std::vector<std::pair<std::string, std::string>> metadata{};  ///< added to the source's
-  /// For the driver of GDAL, such as {{"COMPRESS", "ZSTD"}}. They override `compress`. An .hgt and an
-  /// image take none.
+  /// For the driver of GDAL, such as {{"COMPRESS", "ZSTD"}}. They override `compress`. An .hgt and
+  /// an image take none.
   std::vector<std::pair<std::string, std::string>> creation_options{};
   /// The cells are classes and not heights. The file gets a colour table, and CLASS_1=NAME in its
   /// metadata.
@@ -132,8 +132,8 @@ void write_dem(const std::string& path, const Dem& dem, const Source& source = {
 /// is not writable. Call it before long work.
 void check_writable(const std::string& path, bool overwrite);
 
-/// As above. Also throws IoError when the format is unknown or cannot be written, or when it does not
-/// take the type or one of the creation options.
+/// As above. Also throws IoError when the format is unknown or cannot be written, or when it does
+/// not take the type or one of the creation options.
 void check_writable(const std::string& path, const WriteOptions& options);
 
 /// The .hgt and .tif files of a folder, sorted by name. Throws IoError when there is none.

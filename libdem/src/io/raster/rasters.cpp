@@ -122,6 +122,7 @@ void write_dem(const std::string& path, const Dem& dem, const Source& source,
 }
 
 void check_writable(const std::string& path, const WriteOptions& options) {
+  check_writable(path, options.overwrite);
   std::string format = options.format;
   if (format.empty())
     format = is_image_name(path) || options.heights || options.unknown_grey ? "image"
@@ -141,7 +142,6 @@ void check_writable(const std::string& path, const WriteOptions& options) {
   if (format == "HGT" && options.type.value_or(CellType::int16) != CellType::int16)
     throw IoError(path, "an .hgt holds int16 only");
   if (of_gdal) check_creation_options(path, format == "VRT" ? "GTiff" : format, options);
-  check_writable(path, options.overwrite);
 }
 
 void check_writable(const std::string& path, bool overwrite) {
