@@ -12,7 +12,8 @@ namespace dem {
 bool is_geographic(const GeoRef& ref);
 
 /// The coordinate system with a given name: "EPSG:32619" or "32619", WKT, or a PROJ string. ""
-/// gives "". Throws std::invalid_argument when it is unknown, or has no plane or geographic coordinates.
+/// gives "". Throws std::invalid_argument when it is unknown, or has no plane or geographic
+/// coordinates.
 std::string crs_wkt(const std::string& name);
 
 /// Size of a cell in metres, one for each row.
