@@ -7,7 +7,7 @@
 
 #include "dem/generators.h"
 #include "dem/io/drawing.h"
-#include "places.h"
+#include "dem/io/places.h"
 #include "verbs.h"
 
 namespace dem::app {
