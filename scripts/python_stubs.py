@@ -14,7 +14,8 @@ from libdem import _tables
 # What the parameters are, by name.
 TYPES = {
     "z": "Heights", "truth": "Heights", "got": "Heights", "like": "Heights | None", "sampled": "Heights | None",
-    "known": "npt.ArrayLike | None", "x": "npt.ArrayLike", "y": "npt.ArrayLike", "method": "str", "name": "str",
+    "known": "npt.ArrayLike | None",
+    "x": "npt.ArrayLike | Path | None", "y": "npt.ArrayLike | None", "method": "str", "name": "str",
     "spacing": "float | tuple[float, float] | None", "nodata": "float | None", "to_world": "Sequence[float] | None",
     "crs": "str", "inner_only": "bool", "max_area_km2": "float | None", "max_distance_m": "float | None",
     "min_cells": "int | None", "where": "str", "region": "Path", "whole": "bool", "aux": "Path | Sequence[Path]",
@@ -22,6 +23,10 @@ TYPES = {
     "nodes": "bool | None",
     "bounds": "tuple[float, float, float, float] | None", "cell": "str | float",
     "sigma": "npt.ArrayLike | None", "point_sigma": "npt.ArrayLike | None", "point_weight": "npt.ArrayLike | None",
+    "contours": "Path | Sequence[tuple[float, npt.ArrayLike]] | None",
+    "breaklines": "Path | Sequence[npt.ArrayLike] | None", "to_crs": "str", "x_field": "str", "y_field": "str",
+    "z_field": "str", "sigma_field": "str", "weight_field": "str", "position_field": "str",
+    "delimiter": "str | None", "layer": "str", "classes": "Sequence[int]", "no_fill": "bool",
     "reject_outliers": "float", "snap": "bool", "passes": "int",
     "keep": "float | None", "count": "int | None", "every": "int | None", "edges": "float | None",
     "voids": "float | None", "tracks": "int | None", "contours_m": "float | None", "greedy": "int | None",

@@ -9,7 +9,7 @@
 #include "dem/io/drawing.h"
 #include "dem/io/geodesy.h"
 #include "dem/io/lattices.h"
-#include "places.h"
+#include "dem/io/places.h"
 #include "verbs.h"
 
 namespace dem::app {

@@ -2,13 +2,10 @@
 
 #include <algorithm>
 #include <chrono>
-#include <optional>
 
-#include "dem/gridding.h"
-#include "dem/io/lattices.h"
+#include "dem/io/grid_points.h"
 #include "dem/io/methods.h"
-#include "dem/io/point_files.h"
-#include "dem/io/polygons.h"
+#include "grid_json.h"
 #include "verbs.h"
 
 namespace dem::app {
@@ -26,20 +23,10 @@ struct Options {
   WriteOptions write;
 };
 
-void check_honours_breaklines(const FillMethod& method) {
-  if (method.traits.honours_breaklines) return;
-  std::vector<std::string> others;
-  for (const FillMethod& m : all_fill_methods())
-    if (m.traits.honours_breaklines) others.push_back(m.name);
-  throw std::invalid_argument(fmt::format("--breaklines: method {} knows none; these do: {}",
-                                          method.name, fmt::join(others, ", ")));
-}
-
 ChosenMethod choose(const Options& o) {
   ChosenMethod chosen = find_method(all_fill_methods(), o.method);
   for (const auto& text : o.set) chosen.settings.push_back(parse_setting(text));
   if (!o.sigma.empty()) chosen.settings.emplace_back("sigma", "law");
-  if (!o.breaklines.empty() && !o.no_fill) check_honours_breaklines(*chosen.method);
   chosen.check();
   if (!o.sigma.empty() && !chosen.gives_sigma())
     throw std::invalid_argument("sigma: method " + o.method + " gives no standard deviation");
@@ -59,8 +46,6 @@ void check_options(const Options& o) {
     throw std::invalid_argument("--contours needs --cell, e.g. --cell 30m, or --like");
   if (o.contours && o.bin.outliers > 0)
     throw std::invalid_argument("--reject-outliers is for points, not for --contours");
-  if (!o.bounds.empty()) parse_bounds(o.bounds);
-  if (!o.cell.empty()) parse_cell_size(o.cell);
 }
 
 char parse_delimiter(const std::string& text) {
@@ -70,148 +55,23 @@ char parse_delimiter(const std::string& text) {
   refuse("--delimiter", text, "one character, tab or space");
 }
 
-void append(Points& all, const Points& part) {
-  const auto join = [](auto& to, const auto& from) {
-    to.insert(to.end(), from.begin(), from.end());
-  };
-  join(all.x, part.x);
-  join(all.y, part.y);
-  join(all.z, part.z);
-  join(all.sigma, part.sigma);
-  join(all.weight, part.weight);
+GridInput input_of(const Options& o) { return {o.points, o.contours, o.read, o.breaklines}; }
+
+/// The request. The lattice of --like is there, but has no cells yet.
+GridRequest request_of(const Options& o) {
+  GridRequest request{{}, o.bin, o.gridding, choose(o), !o.no_fill};
+  request.lattice.nodes = o.nodes;
+  if (!o.like.empty()) request.lattice.like.emplace();
+  if (!o.bounds.empty()) request.lattice.bounds = parse_bounds(o.bounds);
+  if (!o.cell.empty()) request.lattice.cell = parse_cell_size(o.cell);
+  return request;
 }
 
-struct Read {
-  PointSource source;
-  Binned binned;
-  Dem lines;  // levels of contour lines, in the cells that they pass
-  Extent extent;
-  std::string lattice_from;
-};
-
-/// The lattice, when it is known before the points are.
-std::optional<Lattice> given_lattice(const Options& o, const Run& run) {
-  if (o.like.empty()) return {};
+void read_like(const Options& o, LatticeWish& lattice, const Run& run) {
+  if (o.like.empty()) return;
   const Dem like = read_dem(o.like, {}, run).dem;
-  return Lattice{like.ref, like.size(), like.spacing};
-}
-
-/// The lattice, once the extent of the points and their system are known.
-Lattice chosen_lattice(const Options& o, const Extent& extent, const std::string& crs) {
-  if (o.cell.empty()) return lattice_for(extent, crs);
-  const Bounds bounds = o.bounds.empty()
-                            ? Bounds{extent.west, extent.south, extent.east, extent.north}
-                            : parse_bounds(o.bounds);
-  if (!(bounds.west < bounds.east && bounds.south < bounds.north))
-    throw std::invalid_argument("the points cover no area; give --bounds");
-  return lattice_over(bounds, parse_cell_size(o.cell), crs, o.nodes || o.bounds.empty());
-}
-
-Breaklines breaklines_on(const Options& o, const Lattice& lattice) {
-  if (o.breaklines.empty()) return {};
-  Breaklines lines = read_breaklines(o.breaklines, lattice.ref, lattice.size);
-  if (std::ranges::all_of(lines.breaks().cells(), [](auto b) { return b == 0; }))
-    throw IoError(o.breaklines, "none of its lines passes between two cells of the lattice");
-  return lines;
-}
-
-/// Points so close along contour lines that the lines cross no cell unseen; `vertices` has what a
-/// first reading found, in the lattice's system.
-double spacing_along_lines(const Options& o, const Lattice& lattice, const Extent& vertices,
-                           const Run& run) {
-  constexpr double part_of_cell = 0.4;
-  PointReadOptions as_they_are = o.read;
-  as_they_are.to_crs.clear();
-  Extent own;
-  read_points(
-      o.points, as_they_are, [&](const Points& part) { own.add(part.x, part.y); }, run);
-  const auto& at = lattice.ref.to_world;
-  const double along_x = std::abs(at[1]) * (own.east - own.west) / (vertices.east - vertices.west);
-  const double along_y =
-      std::abs(at[5]) * (own.north - own.south) / (vertices.north - vertices.south);
-  const double spacing = part_of_cell * std::min(along_x, along_y);
-  if (!(spacing > 0) || !std::isfinite(spacing)) throw IoError(o.points, "its lines cover no area");
-  return spacing;
-}
-
-/// Contour lines on a lattice: each cell that a line passes has its level, and a height at its
-/// centre.
-Read read_contours(const Options& o, const Run& run) {
-  Read read;
-  PointReadOptions options = o.read;
-  auto lattice = given_lattice(o, run.part(0, 0.05));
-  if (lattice && !lattice->ref.crs_wkt.empty()) options.to_crs = lattice->ref.crs_wkt;
-  Extent vertices;
-  const PointSource first = read_points(
-      o.points, options, [&](const Points& part) { vertices.add(part.x, part.y); },
-      run.part(0.05, 0.2));
-  if (first.format == "text" || first.format.starts_with("LAS"))
-    throw IoError(o.points, "has points; --contours needs a vector layer of lines");
-  if (!lattice) lattice = chosen_lattice(o, vertices, first.crs_wkt);
-  options.along_lines = spacing_along_lines(o, *lattice, vertices, run.part(0.2, 0.3));
-  const Breaklines lines = breaklines_on(o, *lattice);
-  PointBins levels(*lattice, {.combine = Combine::median, .plane = false}, lines);
-  PointBins heights(*lattice, {.plane = o.bin.plane}, lines);
-  const Run quiet{run.threads, {}};
-  const auto sink = [&](const Points& part) {
-    levels.add(part, quiet);
-    heights.add(part, quiet);
-  };
-  read.source = read_points(o.points, options, sink, run.part(0.3, 0.8));
-  read.extent = vertices;
-  read.lattice_from = o.like.empty() ? "as asked for" : "as " + o.like;
-  read.lines = levels.finish(run.part(0.8, 0.9)).dem;
-  read.binned = heights.finish(run.part(0.9, 1));
-  read.binned.counts.duplicates = 0;  // lines that share a cell
-  return read;
-}
-
-/// Reads the points into bins. They are kept in memory only while the lattice depends on them.
-Read read_into_bins(const Options& o, const Run& run) {
-  Read read;
-  PointReadOptions options = o.read;
-  auto lattice = given_lattice(o, run.part(0, 0.05));
-  if (lattice && !lattice->ref.crs_wkt.empty()) options.to_crs = lattice->ref.crs_wkt;
-  std::optional<PointBins> bins;
-  if (lattice) bins.emplace(*lattice, o.bin, breaklines_on(o, *lattice));
-  Points all;
-  const Run quiet{run.threads, {}};
-  const auto sink = [&](const Points& part) {
-    read.extent.add(part.x, part.y);
-    if (bins)
-      bins->add(part, quiet);
-    else
-      append(all, part);
-  };
-  read.source = read_points(o.points, options, sink, run.part(0.05, 0.8));
-  if (!bins) {
-    const Lattice chosen = chosen_lattice(o, read.extent, read.source.crs_wkt);
-    bins.emplace(chosen, o.bin, breaklines_on(o, chosen));
-    bins->add(all, run.part(0.8, 0.9));
-  }
-  read.lattice_from = !o.like.empty()     ? "as " + o.like
-                      : !o.bounds.empty() ? "as asked for"
-                      : !o.cell.empty()   ? "bounds from the points"
-                                          : "cells of half the points' mean distance";
-  read.binned = bins->finish(run.part(0.9, 1));
-  return read;
-}
-
-/// Points that miss the lattice: all of them, and the wrong way round?
-void check_on_lattice(const Options& o, const Read& read) {
-  const Dem& dem = read.binned.dem;
-  if (read.binned.counts.cells > 0) return;
-  const auto& at = dem.ref.to_world;
-  const Extent& e = read.extent;
-  const double east = at[0] + at[1] * dem.size().cols, south = at[3] + at[5] * dem.size().rows;
-  const bool swapped = e.south < east && e.north > at[0] && e.west < at[3] && e.east > south;
-  throw IoError(
-      o.points,
-      fmt::format(
-          "none of its {} points lies on the lattice: they cover x {:.10g} to {:.10g}, y "
-          "{:.10g} to {:.10g}; the lattice x {:.10g} to {:.10g}, y {:.10g} to {:.10g}{}",
-          read.source.points, e.west, e.east, e.south, e.north, at[0], east, south, at[3],
-          swapped ? "; with x and y swapped they would lie there (--x-field, --y-field)" : ""));
+  lattice.like = Lattice{like.ref, like.size(), like.spacing};
+  lattice.like_name = o.like;
 }
 
 std::string plural(std::size_t n, const char* what) {
@@ -228,7 +88,7 @@ std::size_t count_absurd(const Dem& dem) {
   return n;
 }
 
-void say_what_was_read(Options& o, const Read& read, Shell& shell) {
+void say_what_was_read(Options& o, const LatticePoints& read, Shell& shell) {
   const BinCounts& n = read.binned.counts;
   const Dem& dem = read.binned.dem;
   for (const auto& note : read.source.notes) shell.say("{}", note);
@@ -255,28 +115,6 @@ void say_what_was_read(Options& o, const Read& read, Shell& shell) {
             grouped(dem.size().cells()), percent_of(n.cells, dem.size().cells()));
 }
 
-Json as_json(const Read& read) {
-  const BinCounts& n = read.binned.counts;
-  const Dem& dem = read.binned.dem;
-  return {{"format", read.source.format},
-          {"notes", read.source.notes},
-          {"crs", crs_name(dem.ref.crs_wkt)},
-          {"cols", dem.size().cols},
-          {"rows", dem.size().rows},
-          {"cell", {std::abs(dem.ref.to_world[1]), std::abs(dem.ref.to_world[5])}},
-          {"cell_m", {dem.spacing.dx_m, dem.spacing.dy_m}},
-          {"lattice_from", read.lattice_from},
-          {"points", n.points},
-          {"without_z", read.source.without_z},
-          {"other_class", read.source.other_class},
-          {"outside", n.outside},
-          {"parted", n.parted},
-          {"combined", n.combined},
-          {"duplicates", n.duplicates},
-          {"outlier_cells", n.outliers},
-          {"known_cells", n.cells}};
-}
-
 void write_outputs(const Options& o, const Dem& dem, const Raster<float>& sigma, Shell& shell,
                    const Run& run) {
   WriteOptions write;
@@ -299,63 +137,45 @@ void write_outputs(const Options& o, const Dem& dem, const Raster<float>& sigma,
 }
 
 /// Says where breaklines close off cells without a point.
-std::size_t say_what_is_closed_off(const Dem& dem, Shell& shell) {
-  const Mask closed = cells_closed_off(dem.known, dem.breaks);
-  const std::size_t cells = count(closed);
-  if (cells == 0) return 0;
-  Dem others = dem;
-  for (std::size_t i = 0; i < closed.cells().size(); ++i)
-    others.known.cells()[i] = !closed.cells()[i];
-  const std::vector<Hole> areas = find_holes(others);
+void say_what_is_closed_off(const std::vector<ClosedOff>& areas, Shell& shell) {
   constexpr std::size_t named = 3;
-  for (std::size_t i = 0; i < std::min(named, areas.size()); ++i) {
-    const Box& box = areas[i].box;
-    const auto& at = dem.ref.to_world;
-    const double col = box.col + (box.cols - 1) / 2., row = box.row + (box.rows - 1) / 2.;
+  for (std::size_t i = 0; i < std::min(named, areas.size()); ++i)
     shell.say(
         "breaklines close off {} around x {:.10g}, y {:.10g} without a point: filled as though "
         "there were no line",
-        plural(areas[i].cells, "cell"), at[0] + at[1] * col + at[2] * row,
-        at[3] + at[4] * col + at[5] * row);
-  }
+        plural(areas[i].cells, "cell"), areas[i].x, areas[i].y);
   if (areas.size() > named) shell.say("... and {} more such areas", areas.size() - named);
-  return cells;
-}
-
-/// Contour lines by their own method have their levels as bounds; all else goes through its points.
-Gridded fill(const Options& o, const Read& read, const ChosenMethod& method, const Run& run) {
-  if (!o.contours || !method.method->fill_lines)
-    return fill_points(read.binned, method, o.gridding, run);
-  return {method.method->fill_lines(read.lines, read.binned.dem.z, method.settings, run), {}};
 }
 
 int grid(Options& o, Shell& shell) {
   check_options(o);
   o.bin.plane = !o.snap;
-  if (o.method.empty()) o.method = o.contours ? default_contour_method() : default_fill_method();
-  const ChosenMethod method = choose(o);
+  if (o.method.empty()) o.method = default_grid_method(o.contours);
+  const GridInput input = input_of(o);
+  GridRequest request = request_of(o);
+  check(input, request);
   WriteOptions write = o.write;
   write.overwrite = shell.overwrite;
   check_writable(o.out, write);
   if (!o.sigma.empty()) check_writable(o.sigma, shell.overwrite);
 
   const Run run = shell.run();
-  Read read = o.contours ? read_contours(o, run.part(0, 0.4)) : read_into_bins(o, run.part(0, 0.4));
-  check_on_lattice(o, read);
+  read_like(o, request.lattice, run.part(0, 0.02));
+  LatticePoints read = place_points(input, request, run.part(0.02, 0.4));
   say_what_was_read(o, read, shell);
-  Json json = as_json(read);
+  Json json = as_json(read, read.binned.dem);
   json["output"] = o.out;
 
   Dem& dem = read.binned.dem;
   Raster<float> sigma;
   if (!o.no_fill) {
-    if (o.snap) read.binned.off_centre.clear();
-    if (!o.breaklines.empty()) json["closed_off"] = say_what_is_closed_off(dem, shell);
+    say_what_is_closed_off(read.closed_off, shell);
+    if (!o.breaklines.empty()) json["closed_off"] = cells_of(read.closed_off);
     const auto start = std::chrono::steady_clock::now();
-    Gridded gridded = fill(o, read, method, run.part(0.4, 0.9));
+    Gridded gridded = fill_between(read, request, run.part(0.4, 0.9));
     const double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    if (method.method->traits.for_contours && !gridded.filled.contour_lines)
+    if (request.method.method->traits.for_contours && !gridded.filled.contour_lines)
       shell.say("{}: the cells with points are no contour lines; the spline filled the rest",
                 o.method);
     dem.z = std::move(gridded.filled.z);

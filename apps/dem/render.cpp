@@ -6,8 +6,8 @@
 
 #include "dem/draw.h"
 #include "dem/io/image.h"
+#include "dem/io/places.h"
 #include "dem/raytrace.h"
-#include "places.h"
 #include "verbs.h"
 
 namespace dem::app {

@@ -155,6 +155,16 @@ def test_other_calls_tell_what_is_wrong(hills, tmp_path):
             (lambda: libdem.grid([np.nan], [1], [1]), "no point has a finite x, y and z"),
             (lambda: libdem.grid([1], [1], [1], bounds=(0, 0, 9, 9)), "bounds needs cell"),
             (lambda: libdem.grid([1], [1], [1], bounds=(0, 0, 9), cell=1), "must be west, south, east, north"),
+            (lambda: libdem.grid(), "x, y and z, the path of a file, or contours are needed"),
+            (lambda: libdem.grid("p.csv", [1], [1]), "leave out the arrays"),
+            (lambda: libdem.grid([1], [1], [1], contours="c.gpkg"), "together with contour lines"),
+            (lambda: libdem.grid(contours=[[1, 2]], cell=1), r"contours.*of shape \(n, 2\)"),
+            (lambda: libdem.grid(contours=[(1, [[1, 2], [5, 9]])]), "contours needs cell"),
+            (lambda: libdem.grid([1, 9], [1, 9], [1, 2], cell=1, breaklines=[[5, 5]]), r"of shape \(n, 2\)"),
+            (lambda: libdem.grid([1, 9], [1, 9], [1, 2], cell=1, breaklines=[[[50, 5], [60, 9]]]),
+             "none of its lines passes between two cells"),
+            (lambda: libdem.grid([1], [1], [1], like=hills, cell=3), "like says it all"),
+            (lambda: libdem.grid([1], [1], [1], crs="nonsense"), "crs = nonsense; must be a coordinate system"),
             (lambda: libdem.supersample(hills, 1), "factor = 1; must be a number in"),
             (lambda: libdem.generate("nois"), 'unknown generator "nois"'),
             (lambda: libdem.generate("noise", 0), "rows = 0; must be a whole number from 1 up"),
@@ -167,6 +177,7 @@ def test_other_calls_tell_what_is_wrong(hills, tmp_path):
             call()
     libdem.write(tmp_path / "there.tif", hills)
     for call, message in [(lambda: libdem.read(tmp_path / "none.tif"), "none.tif: No such file"),
+                          (lambda: libdem.grid(tmp_path / "none.csv"), "none.csv"),
                           (lambda: libdem.write(tmp_path / "there.tif", hills), "overwrite=True replaces it"),
                           (lambda: libdem.write(tmp_path / "no" / "a.tif", hills), "its folder .* does not exist")]:
         with pytest.raises(OSError, match=message):

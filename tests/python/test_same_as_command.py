@@ -100,6 +100,77 @@ def test_grid(dem, tmp_path, keywords, options):
     assert got.dem.to_world == pytest.approx(out.to_world, rel=1e-12)
 
 
+def geojson(path, lines):
+    """Lines of a list of (height, xy), in EPSG:32632."""
+    features = [{"type": "Feature", "properties": {"height": height},
+                 "geometry": {"type": "LineString", "coordinates": np.asarray(xy).tolist()}} for height, xy in lines]
+    crs = {"type": "name", "properties": {"name": "EPSG:32632"}}
+    path.write_text(json.dumps({"type": "FeatureCollection", "crs": crs, "features": features}))
+
+
+@pytest.fixture
+def hill_points(tmp_path):
+    """Points of a step with its file p.csv, in EPSG:32632."""
+    x, y = np.random.default_rng(5).uniform(0, 400, (2, 600))
+    x, y, z = x + 500000, y + 5200000, (50 + 9 * np.sin(y / 40) + 60 * (x > 200)).astype(np.float32)
+    (tmp_path / "p.csv").write_text("x,y,z\n" + "".join(f"{a!r},{b!r},{c!r}\n" for a, b, c in
+                                                      zip(x.tolist(), y.tolist(), z.tolist())))
+    return x, y, z
+
+
+def expect_grid(dem, tmp_path, options, *results):
+    """All results equal what the command line writes, and report the same."""
+    told = json.loads(dem("grid", *options, "out.tif", "--json"))
+    out = libdem.read(tmp_path / "out.tif")
+    for got in results:
+        assert equal_bits(got.elevation, out.elevation)
+        assert got.dem.crs == out.crs
+        assert np.array_equal(got.dem.known, out.known)
+        for name in set(got.report) & set(told) - {"format", "notes", "seconds", "lattice_from"}:
+            assert got.report[name] == told[name], name
+
+
+def test_grid_of_a_file_in_another_system(dem, tmp_path, hill_points):
+    systems = {"crs": "EPSG:32632", "to_crs": "EPSG:3035"}
+    options = ["p.csv", "--crs", "EPSG:32632", "--to-crs", "EPSG:3035", "--cell", "10m"]
+    expect_grid(dem, tmp_path, options, libdem.grid(*hill_points, cell=10, **systems),
+                libdem.grid(tmp_path / "p.csv", cell=10, **systems))
+    expect_grid(dem, tmp_path, ["p.csv", "--cell", "10m", "--no-fill", "--z-field", "z", "--delimiter", ",",
+                                "--overwrite"],
+                libdem.grid(tmp_path / "p.csv", cell=10, no_fill=True, z_field="z", delimiter=","))
+
+
+def test_grid_like_another_dem(dem, tmp_path, hill_points):
+    like = libdem.grid(*hill_points, cell=10, crs="EPSG:32632", to_crs="EPSG:3035")
+    libdem.write(tmp_path / "like.tif", like)
+    expect_grid(dem, tmp_path, ["p.csv", "--crs", "EPSG:32632", "--like", "like.tif", "--method", "mcmd"],
+                libdem.grid(*hill_points, crs="EPSG:32632", like=like, method="mcmd"))
+
+
+def test_grid_with_breaklines(dem, tmp_path, hill_points):
+    wall = np.array([[500200, 5199900], [500200, 5200300], [500210, 5200500]])
+    geojson(tmp_path / "wall.geojson", [(0, wall)])
+    options = ["p.csv", "--crs", "EPSG:32632", "--cell", "10m", "--breaklines", "wall.geojson"]
+    keywords = {"crs": "EPSG:32632", "cell": 10}
+    expect_grid(dem, tmp_path, options,
+                libdem.grid(*hill_points, breaklines=tmp_path / "wall.geojson", **keywords),
+                libdem.grid(*hill_points, breaklines=[wall], **keywords))
+
+
+def test_grid_of_contour_lines(dem, tmp_path):
+    angle = np.arange(190) / 30
+    lines = [(level, np.stack([500000 + 5 * (100 - level) * np.cos(angle),
+                               5200000 + 5 * (100 - level) * np.sin(angle)], axis=1)) for level in range(20, 100, 20)]
+    geojson(tmp_path / "c.geojson", lines)
+    options = ["c.geojson", "--contours", "--cell", "10m", "--z-field", "height"]
+    got = [libdem.grid(contours=tmp_path / "c.geojson", cell=10, z_field="height"),
+           libdem.grid(contours=lines, cell=10, crs="EPSG:32632")]
+    expect_grid(dem, tmp_path, options, *got)
+    assert got[0].report["method"] == "contours"
+    expect_grid(dem, tmp_path, [*options, "--to-crs", "EPSG:3035", "--method", "spline", "--overwrite"],
+                libdem.grid(contours=lines, cell=10, crs="EPSG:32632", to_crs="EPSG:3035", method="spline"))
+
+
 @pytest.mark.parametrize("name, keywords, options", [
     ("noise:foothills", {"seed": 7}, ["--seed", "7"]),
     ("noise", {"H": 0.9, "spacing": (10, 20), "origin": (305000, 4910000), "crs": "EPSG:32619"},

@@ -219,37 +219,98 @@ def supersample(z, factor, *, known=None, preserve="heights", nodes=None, method
             dem, _tables.as_settings(how), method, _method_settings(method, settings), _threads(threads), call)))
 
 
-def grid(x, y, z, *, like=None, bounds=None, cell="", crs="", nodes=False, point_sigma=None,
-         point_weight=None, combine="mean", reject_outliers=0.0, snap=False, passes=1,
-         method=_core.default_method, threads=0, progress=None, **settings):
-    """Scattered points to a DEM; the surface passes through them.
+def grid(x=None, y=None, z=None, *, contours=None, breaklines=None, like=None, bounds=None, cell="", crs="",
+         to_crs="", nodes=False, point_sigma=None, point_weight=None, x_field="", y_field="", z_field="",
+         sigma_field="", weight_field="", position_field="", delimiter=None, layer="", classes=(), nodata=None,
+         combine="mean", reject_outliers=0.0, snap=False, passes=1, no_fill=False, method="", threads=0,
+         progress=None, **settings):
+    """A DEM from scattered points or contour lines. The same numbers as `dem grid`, bit for bit.
 
+    One of:
     x, y, z   arrays of one length; points that are not finite are left out
-    like      a Dem whose lattice is taken; else
-    bounds    (west, south, east, north), the outer edges of the cells (nodes=True: the centres of the
-              outer ones); else what the points cover
-    cell      size of a cell with its unit, "30m", "1s", "0.001deg"; else from the points' density
-    crs       of x and y, "EPSG:32632", WKT; "": metres
-    point_sigma, point_weight   of each point, arrays
-    combine   several points in a cell: mean, min, max, median
-    reject_outliers   leave out cells so many spreads off their surroundings, e.g. 10
-    snap      take points as lying on their cell's centre
-    passes    so often the surface is corrected to meet points between cells
-    method, settings: as `fill`
+    x         the path of a file of points: text with columns, LAS, or a vector layer
+    contours  contour lines: the path of a vector layer, or a list of (level, xy) with xy an array of
+              shape (n, 2); no terraces appear between them
 
-    Returns a Filled. Copies: x, y and z once.
+    breaklines   lines across which the surface may jump: the path of a vector layer, or a list of arrays
+              of shape (n, 2), in the coordinate system `crs`
+    like      a Dem whose lattice is used; otherwise
+    bounds    (west, south, east, north), the outer edges of the cells (nodes=True: the centres of the
+              outer ones); without them, what the points cover
+    cell      cell size with its unit, "30m", "1s", "0.001deg"; without it, from the density of the points
+    crs       coordinate system of x and y, "EPSG:32632", WKT; "": that of the file, or metres
+    to_crs    coordinate system of the DEM; "": that of the points
+    point_sigma, point_weight   standard error in metres and weight of each point, arrays
+    x_field, y_field, z_field, sigma_field, weight_field, position_field   columns of a file, by name or
+              by number from 1; z_field is also the attribute of a vector layer
+    delimiter, layer, classes, nodata   how a file is read: character between columns, layer of a vector
+              file, LAS classes, elevation that means nodata
+    combine   how the points of one cell become one height: mean, min, max, median
+    reject_outliers   drop cells more than this many robust standard deviations from their neighbours
+    snap      move each point to the centre of its cell
+    passes    number of correction passes that pull the surface to points off cell centres
+    no_fill   cells without points stay unknown
+    method    as `fill`; "": the default one, or `contours` for contour lines; its settings are further
+              keywords
+
+    Returns a Filled.
     """
+    source = _grid_input(x, y, z, contours, breaklines, point_sigma, point_weight)
     if like is not None:
         like, _ = _as_dem(like)
     if bounds is not None:
         bounds = _numbers("bounds", bounds, 4, "west, south, east, north")
+    read = {"x_field": x_field, "y_field": y_field, "z_field": z_field, "sigma_field": sigma_field,
+            "weight_field": weight_field, "position_field": position_field, "layer": layer, "crs": crs,
+            "to_crs": to_crs, **({} if nodata is None else {"nodata": nodata})}
     binning = _tables.as_settings({"combine": combine, "plane": not snap, "outliers": reject_outliers})
     gridding = _tables.as_settings({"passes": passes})
     cell = f"{cell}m" if isinstance(cell, (int, float)) else cell
     with callback(progress) as call:
-        return Filled(*_with_no_source(_call.grid(
-            x, y, z, point_sigma, point_weight, like, bounds, cell, crs, nodes, binning,
-            gridding, method, _method_settings(method, settings), _threads(threads), call)))
+        dem, sigma, report = _call.grid(
+            source, _tables.as_settings(read), list(classes), delimiter, like, bounds, cell, nodes, binning,
+            gridding, method, _method_settings(method, settings), not no_fill, _threads(threads), call)
+    return Filled(dem, sigma, None, json.loads(report))
+
+
+def _is_path(value):
+    return isinstance(value, (str, os.PathLike))
+
+
+def _grid_input(x, y, z, contours, breaklines, point_sigma, point_weight):
+    """What `grid` makes a DEM from."""
+    source = _core.GridInput()
+    given = [v is not None for v in (x, y, z, point_sigma, point_weight)]
+    if contours is not None:
+        if any(given):
+            raise ValueError("contours: points cannot be gridded together with contour lines")
+        if _is_path(contours):
+            source.read_file(os.fspath(contours), True)
+        else:
+            source.take_contours(_lines("contours", contours, "(level, xy)", lambda line: (
+                float(line[0]), np.asarray(line[1], dtype=np.float64))))
+    elif _is_path(x):
+        if any(given[1:]):
+            raise ValueError("x is a file, which has y, z and their errors; leave out the arrays")
+        source.read_file(os.fspath(x), False)
+    elif not all(given[:3]):
+        raise ValueError("x, y and z, the path of a file, or contours are needed")
+    else:
+        source.take_points(x, y, z, point_sigma, point_weight)
+    if breaklines is not None:
+        if _is_path(breaklines):
+            source.read_breaklines(os.fspath(breaklines))
+        else:
+            source.take_breaklines(_lines("breaklines", breaklines, "xy", lambda line: np.asarray(
+                line, dtype=np.float64)))
+    return source
+
+
+def _lines(name, lines, form, convert):
+    try:
+        return [convert(line) for line in lines]
+    except (TypeError, ValueError, IndexError):
+        raise ValueError(f"{name}: must be a path, or a list of {form} with xy of shape (n, 2)") from None
 
 
 def _with_no_source(result):

@@ -37,6 +37,11 @@ py::array array_from(Raster<T>&& raster) {
   return py::array_t<T>({rows, cols}, cells, keep);
 }
 
+/// The standard errors as such an array; None when there are none.
+inline py::object sigma_array(Raster<float>&& sigma) {
+  return sigma.empty() ? py::object(py::none()) : py::object(array_from(std::move(sigma)));
+}
+
 /// The raster's cells as an array that lives with `owner`: no copy.
 template <class T>
 py::array array_view(Raster<T>& raster, const py::handle& owner) {

@@ -8,7 +8,8 @@ namespace dem::python {
 
 void bind_dem(pybind11::module_& module);      // Dem, read, write
 void bind_tables(pybind11::module_& module);   // methods, generators, fields
-void bind_fill(pybind11::module_& module);     // fill, supersample, grid
+void bind_fill(pybind11::module_& module);     // fill, supersample
+void bind_points(pybind11::module_& module);   // grid
 void bind_terrain(pybind11::module_& module);  // sample, generate, erode
 void bind_measure(pybind11::module_& module);  // evaluate, render
 void bind_mosaic(pybind11::module_& module);   // SharedRaster, for libdem.distributed

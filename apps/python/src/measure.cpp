@@ -7,9 +7,9 @@
 #include "bind.h"
 #include "call.h"
 #include "dem/draw.h"
+#include "dem/io/places.h"
 #include "dem/raytrace.h"
 #include "evaluation_json.h"
-#include "places.h"
 
 namespace dem::python {
 namespace {
@@ -68,8 +68,8 @@ py::array render(const DemFile& file, const std::string& style, const Settings& 
     throw std::invalid_argument("style = " + style + "; must be relief, hillshade or view");
   ViewOptions options;
   apply(settings, fields(options));
-  if (!camera.empty()) options.camera = app::place_in(dem, "camera", camera);
-  if (!target.empty()) options.target = app::place_in(dem, "target", target);
+  if (!camera.empty()) options.camera = place_in(dem, "camera", camera);
+  if (!target.empty()) options.target = place_in(dem, "target", target);
   return picture_array(call([&](const Run& run) { return render_view(dem, options, run); }));
 }
 

@@ -24,6 +24,7 @@ PYBIND11_MODULE(_core, module) {
   dem::python::bind_dem(module);
   dem::python::bind_tables(module);
   dem::python::bind_fill(module);
+  dem::python::bind_points(module);
   dem::python::bind_terrain(module);
   dem::python::bind_measure(module);
   dem::python::bind_mosaic(module);

@@ -8,6 +8,7 @@
 #include "dem/generators.h"
 #include "dem/gridding.h"
 #include "dem/io/methods.h"
+#include "dem/io/point_files.h"
 #include "dem/io/rasters.h"
 #include "dem/raytrace.h"
 #include "dem/supersample.h"
@@ -89,6 +90,7 @@ void bind_tables(py::module_& module) {
   module.def("option_fields", [] {
     py::dict options;
     options["bin"] = fields_of<BinOptions>();
+    options["points"] = fields_of<PointReadOptions>();
     options["gridding"] = fields_of<GriddingOptions>();
     options["supersample"] = fields_of<SupersampleOptions>();
     options["write"] = fields_of<WriteOptions>();

@@ -13,8 +13,8 @@
 #include "dem/greedy.h"
 #include "dem/io/drawing.h"
 #include "dem/io/geodesy.h"
+#include "dem/io/places.h"
 #include "dem/sample.h"
-#include "places.h"
 #include "settings.h"
 
 namespace dem::python {
@@ -122,8 +122,8 @@ std::unique_ptr<DemFile> generate(const std::string& name, const Settings& setti
   Drawing drawing{grey_levels(generator, image, file)};
   const Size size = size_of(shape, generator, drawing.grey);
   const Canvas canvas = generator.globe
-                            ? app::globe_canvas(size)
-                            : app::plane_canvas(size, {dx, dy}, origin.first, origin.second, crs);
+                            ? globe_canvas(size)
+                            : plane_canvas(size, {dx, dy}, origin.first, origin.second, crs);
   check_canvas(canvas);
   if (!generator.image.empty() && drawing.grey.empty()) drawing = draw_vectors(file, canvas);
   Dem dem = Call(threads, progress)([&](const Run& run) {

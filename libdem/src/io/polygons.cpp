@@ -9,6 +9,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <stdexcept>
 
 #include "dem/io/rasters.h"
 #include "io/gdal_support.h"
@@ -31,14 +33,19 @@ std::unique_ptr<OGRSpatialReference> crs_of(const GeoRef& ref) {
 }
 
 /// World coordinates to columns and rows: (0, 0) is the corner of the first cell.
+std::pair<double, double> to_cell(double x, double y, const std::array<double, 6>& inverse) {
+  return {inverse[0] + inverse[1] * x + inverse[2] * y,
+          inverse[3] + inverse[4] * x + inverse[5] * y};
+}
+
 void to_cells(OGRGeometryH geometry, const std::array<double, 6>& inverse) {
   for (int i = 0; i < OGR_G_GetGeometryCount(geometry); ++i)
     to_cells(OGR_G_GetGeometryRef(geometry, i), inverse);
   for (int i = 0; i < OGR_G_GetPointCount(geometry); ++i) {
     double x = 0, y = 0;
     OGR_G_GetPoint(geometry, i, &x, &y, nullptr);
-    OGR_G_SetPoint_2D(geometry, i, inverse[0] + inverse[1] * x + inverse[2] * y,
-                      inverse[3] + inverse[4] * x + inverse[5] * y);
+    const auto [col, row] = to_cell(x, y, inverse);
+    OGR_G_SetPoint_2D(geometry, i, col, row);
   }
 }
 
@@ -48,6 +55,14 @@ std::array<double, 6> corner_transform(const GeoRef& ref) {
   at[0] -= 0.5 * (at[1] + at[2]);
   at[3] -= 0.5 * (at[4] + at[5]);
   return at;
+}
+
+/// What to_cell takes; nothing when the cells have no area.
+std::optional<std::array<double, 6>> world_to_cells(const GeoRef& ref) {
+  auto corner = corner_transform(ref);
+  std::array<double, 6> inverse{};
+  if (!GDALInvGeoTransform(corner.data(), inverse.data())) return {};
+  return inverse;
 }
 
 /// Calls each(geometry) for every geometry of a vector file, in columns and rows of a raster.
@@ -60,10 +75,8 @@ void for_each_geometry(const std::string& path, const GeoRef& ref, const Each& e
   if (!dataset) errors.fail(path, "cannot be opened");
   errors.clear();
 
-  auto corner = corner_transform(ref);
-  std::array<double, 6> inverse{};
-  if (!GDALInvGeoTransform(corner.data(), inverse.data()))
-    throw IoError(path, "the raster's cells have no area");
+  const auto inverse = world_to_cells(ref);
+  if (!inverse) throw IoError(path, "the raster's cells have no area");
   const auto target = ref.crs_wkt.empty() ? nullptr : crs_of(ref);
 
   for (int l = 0; l < GDALDatasetGetLayerCount(dataset.get()); ++l) {
@@ -87,7 +100,7 @@ void for_each_geometry(const std::string& path, const GeoRef& ref, const Each& e
       if (transform &&
           OGRGeometry::FromHandle(geometry.get())->transform(transform.get()) != OGRERR_NONE)
         errors.fail(path, "its coordinates cannot be turned into the raster's");
-      to_cells(geometry.get(), inverse);
+      to_cells(geometry.get(), *inverse);
       each(std::move(geometry));
     }
   }
@@ -137,6 +150,40 @@ Breaklines read_breaklines(const std::string& path, const GeoRef& ref, Size size
   });
   if (lines.empty()) throw IoError(path, "holds no line and no polygon");
   return {lines, size};
+}
+
+Breaklines make_breaklines(const std::vector<WorldLine>& lines, const std::string& crs_wkt,
+                           const GeoRef& ref, Size size) {
+  std::unique_ptr<OGRCoordinateTransformation> transform;
+  if (!crs_wkt.empty() && !ref.crs_wkt.empty()) {
+    const GdalErrors quiet;
+    const auto from = crs_of({{}, crs_wkt}), to = crs_of(ref);
+    transform.reset(OGRCreateCoordinateTransformation(from.get(), to.get()));
+    if (!transform)
+      throw std::invalid_argument("breaklines: cannot be turned into the raster's coordinates");
+  }
+  const auto inverse = world_to_cells(ref);
+  if (!inverse) throw std::invalid_argument("breaklines: the raster's cells have no area");
+  std::vector<Breakline> in_cells;
+  for (WorldLine line : lines) {
+    if (line.x.size() != line.y.size() || line.x.size() < 2)
+      throw std::invalid_argument(
+          fmt::format("breaklines: line {} has {} values of x and {} of y; must have as many, at "
+                      "least 2",
+                      in_cells.size(), line.x.size(), line.y.size()));
+    const GdalErrors quiet;
+    if (transform && !transform->Transform(int(line.x.size()), line.x.data(), line.y.data()))
+      throw std::invalid_argument(fmt::format(
+          "breaklines: line {} cannot be turned into the raster's coordinates", in_cells.size()));
+    Breakline cells;
+    for (std::size_t i = 0; i < line.x.size(); ++i) {
+      const auto [col, row] = to_cell(line.x[i], line.y[i], *inverse);
+      cells.col.push_back(col - 0.5);
+      cells.row.push_back(row - 0.5);
+    }
+    in_cells.push_back(std::move(cells));
+  }
+  return {in_cells, size};
 }
 
 Polygons::~Polygons() = default;

@@ -58,6 +58,23 @@ using PointSink = std::function<void(const Points&)>;
 PointSource read_points(const std::string& path, const PointReadOptions& options,
                         const PointSink& sink, const Run& run = {});
 
+/// Delivers points that are in memory, as if they stood in a file. Of the options, `crs`, `to_crs`
+/// and `nodata` count. Points whose x, y or z is not finite are left out (PointSource::without_z).
+/// Throws: std::invalid_argument, Cancelled, and what `sink` throws.
+PointSource deliver_points(Points points, const PointReadOptions& options, const PointSink& sink);
+
+/// A contour line in memory.
+struct ContourLine {
+  double level_m = 0;
+  std::vector<double> x, y;
+};
+
+/// Delivers the vertices of contour lines in memory, and points along them (`along_lines`), as
+/// read_points does for a vector layer.
+/// Throws: as deliver_points; std::invalid_argument when the x and y of a line differ in number.
+PointSource deliver_contours(const std::vector<ContourLine>& lines, const PointReadOptions& options,
+                             const PointSink& sink);
+
 /// The WKT of the coordinate system with a given name ("EPSG:25832", PROJ, WKT, a file).
 /// Throws std::invalid_argument.
 std::string crs_from_text(const std::string& text);

@@ -35,6 +35,18 @@ class Polygons {
 /// Throws IoError as Polygons does, and when the file has neither lines nor polygons.
 Breaklines read_breaklines(const std::string& path, const GeoRef& ref, Size size);
 
+/// A line in memory.
+struct WorldLine {
+  std::vector<double> x, y;
+};
+
+/// Breaklines in memory, on the lattice of a raster. `crs_wkt` is their coordinate system; "": that
+/// of the raster.
+/// Throws std::invalid_argument for a line whose x and y differ in number, that is not finite, or
+/// that cannot be transformed.
+Breaklines make_breaklines(const std::vector<WorldLine>& lines, const std::string& crs_wkt,
+                           const GeoRef& ref, Size size);
+
 /// Writes holes as polygons with their facts (hole_facts()) as attributes. The extension decides
 /// the format (.gpkg, .geojson, .shp and others). The path holds what it held before or the whole
 /// new file.

@@ -54,8 +54,9 @@ void check_degrees(const std::string& path, const Points& points) {
     if (std::abs(x) <= 90 && std::abs(y) <= 360)
       throw IoError(path,
                     fmt::format("x = {}, y = {}: y is no latitude; longitude and latitude are "
-                                "the wrong way round; x_field and y_field name the columns",
-                                x, y));
+                                "the wrong way round",
+                                x, y),
+                    "x_field");
     throw IoError(path, fmt::format("x = {}, y = {} are no longitude and latitude", x, y), "crs");
   }
 }
@@ -157,14 +158,102 @@ std::vector<Field> fields(PointReadOptions& o) {
       {"to_crs", o.to_crs, "coordinate system that x and y are brought to; \"\": as they are"}};
 }
 
-PointSource read_points(const std::string& path, const PointReadOptions& options,
-                        const PointSink& sink, const Run& run) {
+namespace {
+
+/// The options with the coordinate systems as WKT.
+PointReadOptions with_systems(PointReadOptions options) {
   check_options(options);
   register_gdal();
-  PointReadOptions o = options;
-  if (!o.crs.empty()) o.crs = crs_from_text(o.crs);
-  if (!o.to_crs.empty()) o.to_crs = crs_from_text(o.to_crs);
+  if (!options.crs.empty()) options.crs = crs_from_text(options.crs);
+  if (!options.to_crs.empty()) options.to_crs = crs_from_text(options.to_crs);
+  return options;
+}
 
+/// Hands points in memory on, in the coordinate system asked for.
+PointSource deliver(const char* format, Points& points, std::size_t without_z,
+                    const PointReadOptions& options, const PointSink& sink) {
+  PointSource source;
+  source.format = format;
+  source.crs_wkt = options.crs;
+  source.points = points.size();
+  source.without_z = without_z;
+  if (points.size() == 0)
+    throw std::invalid_argument(
+        fmt::format("{}: no point has a finite x, y and z; at least one is needed", format));
+  try {
+    Bridge bridge(format, options.to_crs);
+    bridge.open(source);
+    bridge.cross(points);
+  } catch (const IoError& error) {  // there is no file whose fault this could be
+    throw std::invalid_argument(error.what());
+  }
+  sink(points);
+  return source;
+}
+
+/// Throws std::invalid_argument unless a column has a value for every point, or `may_be_empty`.
+template <class T>
+void check_length(const char* name, const std::vector<T>& column, std::size_t points,
+                  bool may_be_empty) {
+  if (column.size() != points && !(may_be_empty && column.empty()))
+    throw std::invalid_argument(
+        fmt::format("points.{} has {} values; must have {}, as z", name, column.size(), points));
+}
+
+/// Leaves out the points that have no position or no elevation, and returns their number.
+std::size_t drop_unfinished(Points& points, const std::optional<double>& nodata) {
+  const std::size_t n = points.size();
+  check_length("x", points.x, n, false), check_length("y", points.y, n, false);
+  check_length("sigma", points.sigma, n, true), check_length("weight", points.weight, n, true);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vertex v{points.x[i], points.y[i], double(points.z[i])};
+    if (!v.finite() || nodata == v.z) continue;
+    points.x[kept] = v.x, points.y[kept] = v.y, points.z[kept] = points.z[i];
+    if (!points.sigma.empty()) points.sigma[kept] = points.sigma[i];
+    if (!points.weight.empty()) points.weight[kept] = points.weight[i];
+    ++kept;
+  }
+  points.x.resize(kept), points.y.resize(kept), points.z.resize(kept);
+  if (!points.sigma.empty()) points.sigma.resize(kept);
+  if (!points.weight.empty()) points.weight.resize(kept);
+  return n - kept;
+}
+
+}  // namespace
+
+PointSource deliver_points(Points points, const PointReadOptions& options, const PointSink& sink) {
+  const PointReadOptions o = with_systems(options);
+  const std::size_t without_z = drop_unfinished(points, o.nodata);
+  return deliver("points", points, without_z, o, sink);
+}
+
+PointSource deliver_contours(const std::vector<ContourLine>& lines, const PointReadOptions& options,
+                             const PointSink& sink) {
+  const PointReadOptions o = with_systems(options);
+  Points points;
+  std::size_t without_z = 0;
+  for (std::size_t l = 0; l < lines.size(); ++l) {
+    const ContourLine& line = lines[l];
+    if (line.x.size() != line.y.size())
+      throw std::invalid_argument(
+          fmt::format("contours: line {} has {} values of x and {} of y; must have as many", l,
+                      line.x.size(), line.y.size()));
+    Vertex last{};
+    for (std::size_t i = 0; i < line.x.size(); ++i) {
+      const Vertex v{line.x[i], line.y[i], line.level_m};
+      if (i > 0 && o.along_lines > 0 && last.finite() && v.finite())
+        add_between(last, v, o.along_lines, points);
+      add_point(v, without_z, points);
+      last = v;
+    }
+  }
+  return deliver("contours", points, without_z, o, sink);
+}
+
+PointSource read_points(const std::string& path, const PointReadOptions& options,
+                        const PointSink& sink, const Run& run) {
+  const PointReadOptions o = with_systems(options);
   PointSource source;
   Bridge bridge(path, o.to_crs);
   const auto parts = [&](Points& points) {

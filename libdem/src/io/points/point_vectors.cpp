@@ -14,19 +14,8 @@
 #include "io/points/point_reading.h"
 
 namespace dem::io {
-namespace {
 
-struct Vertex {
-  double x, y, z;
-  bool finite() const { return std::isfinite(x) && std::isfinite(y) && std::isfinite(z); }
-};
-
-/// How the vertices of a feature become points.
-struct Taking {
-  double height;       // of all vertices; NaN: none
-  bool height_is_set;  // else each vertex has its own
-  double spacing;      // along lines; 0: vertices only
-};
+bool Vertex::finite() const { return std::isfinite(x) && std::isfinite(y) && std::isfinite(z); }
 
 void add_point(const Vertex& v, std::size_t& without_z, Points& points) {
   if (!v.finite()) {
@@ -38,7 +27,6 @@ void add_point(const Vertex& v, std::size_t& without_z, Points& points) {
   points.z.push_back(float(v.z));
 }
 
-/// Points between two vertices of a line.
 void add_between(const Vertex& a, const Vertex& b, double spacing, Points& points) {
   const double steps = std::ceil(std::hypot(b.x - a.x, b.y - a.y) / spacing);
   for (double i = 1; i < steps; ++i) {
@@ -48,6 +36,15 @@ void add_between(const Vertex& a, const Vertex& b, double spacing, Points& point
     points.z.push_back(float(a.z + t * (b.z - a.z)));
   }
 }
+
+namespace {
+
+/// How the vertices of a feature become points.
+struct Taking {
+  double height;       // of all vertices; NaN: none
+  bool height_is_set;  // else each vertex has its own
+  double spacing;      // along lines; 0: vertices only
+};
 
 /// All vertices of a geometry, of its parts too.
 void add_vertices(OGRGeometryH geometry, const Taking& how, std::size_t& without_z,
