@@ -215,7 +215,7 @@ def main():
     # A row that does not state its memory does not compile.
     table = tree / "libdem/src/methods/methods.cpp"
     write(table, table.read_text(encoding="utf-8").replace(TRAITS, ""))
-    assert "BytesPerCell" in run("cmake", "--build", made, "--target", "dem", status=1)
+    assert "MethodTraits" in run("cmake", "--build", made, "--target", "dem", status=1)
 
 
 if __name__ == "__main__":
