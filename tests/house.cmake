@@ -54,3 +54,10 @@ if(DEM_BUILD_IO AND NOT DEM_SANITIZE)
 endif()
 set_tests_properties(${fast_tests} PROPERTIES LABELS fast)
 set_tests_properties(${house_tests} PROPERTIES LABELS house TIMEOUT 600)
+
+# Builds a copy of the tree with one more method; the copy is kept, so that later runs are short.
+if(DEM_BUILD_IO AND DEM_BUILD_APPS AND NOT DEM_SANITIZE)
+  add_test(NAME doors.planted_method COMMAND Python3::Interpreter
+           ${CMAKE_CURRENT_SOURCE_DIR}/planted_method.py ${CMAKE_CURRENT_BINARY_DIR}/planted)
+  set_tests_properties(doors.planted_method PROPERTIES LABELS doors TIMEOUT 1200)
+endif()
