@@ -87,7 +87,7 @@ for name in "${asked[@]}"; do
     slow) with_build release slow "${program[*]}" --label-regex slow ;;
     docs) with_build release docs "${program[*]}" --tests-regex '^house\.(docs|tutorial)$' ;;
     python) with_build release python "${program[*]} dem_python_package fill_in_c fill_in_cpp" \
-                       --tests-regex '^python\.' ;;
+                       --tests-regex '^(python|doors)\.' ;;
     qgis) with_build release qgis "${program[*]} qgis_plugin" --tests-regex '^qgis$' ;;
     package) with_build release package "" --tests-regex '^house\.(consumer|package)' ;;
     asan) with_build debug "AddressSanitizer and UBSan" "" --label-regex fast --exclude-regex '^house\.' ;;
